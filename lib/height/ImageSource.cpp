@@ -1,0 +1,157 @@
+#include "height/ImageSource.h"
+
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#ifdef HAVE_OPENIMAGEIO
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <OpenImageIO/half.h>
+#include <OpenImageIO/imageio.h>
+
+#include "height/HeightFile.h"
+
+namespace terrain {
+
+namespace {
+
+/// OpenImageIO's reason in one line.
+std::string reason(std::string text)
+{
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text.empty() ? "unreadable data" : text;
+}
+
+std::unique_ptr<OIIO::ImageInput> openInput(const std::string& path)
+{
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    config.attribute("oiio:RawColor", 1);
+    return OIIO::ImageInput::open(path, &config);
+}
+
+template <class T>
+void widen(const void* from, std::vector<double>& to)
+{
+    const T* samples = static_cast<const T*>(from);
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = double(samples[i]);
+}
+
+/// Samples of `type` as doubles. False for a type that has no number.
+bool toDoubles(OIIO::TypeDesc type, const void* from, std::vector<double>& to)
+{
+    switch (type.basetype) {
+    case OIIO::TypeDesc::UINT8: widen<std::uint8_t>(from, to); return true;
+    case OIIO::TypeDesc::INT8: widen<std::int8_t>(from, to); return true;
+    case OIIO::TypeDesc::UINT16: widen<std::uint16_t>(from, to); return true;
+    case OIIO::TypeDesc::INT16: widen<std::int16_t>(from, to); return true;
+    case OIIO::TypeDesc::UINT32: widen<std::uint32_t>(from, to); return true;
+    case OIIO::TypeDesc::INT32: widen<std::int32_t>(from, to); return true;
+    case OIIO::TypeDesc::UINT64: widen<std::uint64_t>(from, to); return true;
+    case OIIO::TypeDesc::INT64: widen<std::int64_t>(from, to); return true;
+    case OIIO::TypeDesc::FLOAT: widen<float>(from, to); return true;
+    case OIIO::TypeDesc::DOUBLE: widen<double>(from, to); return true;
+    case OIIO::TypeDesc::HALF: {
+        const half* samples = static_cast<const half*>(from);
+        for (std::size_t i = 0; i < to.size(); ++i) to[i] = double(float(samples[i]));
+        return true;
+    }
+    default: return false;
+    }
+}
+
+/// Whether the compressed data of a JPEG file end. Its decoder fills the rest of a truncated picture with grey and reports nothing.
+/// Compressed data hold no FF byte without a following 0, so the last end marker has to stand behind the last start of a scan.
+bool jpegEnds(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    const std::size_t end = bytes.rfind("\xFF\xD9");
+    const std::size_t scan = bytes.rfind("\xFF\xDA");
+    return end != std::string::npos && (scan == std::string::npos || end > scan);
+}
+
+/// Reads `count` rows of one channel, counted from the top, in the channel's own type.
+bool readRows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel, OIIO::TypeDesc type, int firstRow, int count, void* rows)
+{
+    const int begin = spec.y + firstRow;
+    if (spec.tile_width > 0)
+        return input.read_tiles(0, 0, spec.x, spec.x + spec.width, begin, begin + count, 0, 1, channel, channel + 1, type, rows);
+    return input.read_scanlines(0, 0, begin, begin + count, 0, channel, channel + 1, type, rows);
+}
+
+Result<HeightMap> decode(const std::string& path, OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel,
+                         const HeightFileOptions& options)
+{
+    auto builder = HeightMapBuilder::create(path, spec.width, spec.height, options);
+    if (!builder) return builder.error();
+    const OIIO::TypeDesc type = spec.channelformat(channel);
+    builder.value().setFloatingPoint(type.is_floating_point());
+
+    const int chunk = spec.tile_width > 0 ? spec.tile_height : 64;
+    const std::size_t rowBytes = std::size_t(spec.width) * type.size();
+    std::vector<unsigned char> bytes(rowBytes * std::size_t(std::min(chunk, spec.height)));
+    std::vector<double> samples(std::size_t(spec.width));
+    for (int row = 0; row < spec.height; row += std::min(chunk, spec.height - row)) {
+        const int count = std::min(chunk, spec.height - row);
+        if (!readRows(input, spec, channel, type, row, count, bytes.data()) || input.has_error())
+            return Error{path, "a complete image", reason(input.geterror())};
+        for (int i = 0; i < count; ++i) {
+            if (!toDoubles(type, bytes.data() + std::size_t(i) * rowBytes, samples))
+                return Error{path, "numbers as samples", std::string("type ") + type.c_str()};
+            builder.value().appendRow(samples.data());
+        }
+    }
+    return std::move(builder).value().finish();
+}
+
+}  // namespace
+
+bool hasImageReader() { return true; }
+
+std::optional<std::string> whyNotAnImage(const std::string& path)
+{
+    if (openInput(path)) return std::nullopt;
+    return reason(OIIO::geterror());
+}
+
+Result<HeightMap> readImage(const std::string& path, const HeightFileOptions& options)
+{
+    const auto input = openInput(path);
+    if (!input) return Error{path, "an image that OpenImageIO reads", reason(OIIO::geterror())};
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.deep || spec.depth > 1) return Error{path, "a flat image", spec.deep ? "a deep image" : "a volume"};
+    const auto channel = chooseChannel(path, spec.nchannels, options);
+    if (!channel) return channel.error();
+    if (std::string_view(input->format_name()) == "jpeg" && !jpegEnds(path))
+        return Error{path, "a complete image", "JPEG data without an end"};
+    return decode(path, *input, spec, channel.value(), options);
+}
+
+}  // namespace terrain
+
+#else
+
+namespace terrain {
+
+bool hasImageReader() { return false; }
+
+std::optional<std::string> whyNotAnImage(const std::string&) { return "this build lacks OpenImageIO"; }
+
+Result<HeightMap> readImage(const std::string& path, const HeightFileOptions&)
+{
+    return Error{path, "a build with OpenImageIO", "one that lacks it"};
+}
+
+}  // namespace terrain
+
+#endif
