@@ -1,0 +1,72 @@
+#include "Options.h"
+
+namespace app {
+
+namespace {
+
+const char* const optionHelp = R"(
+Terrain
+  -h, --heightmap FILE      height map: an image, a raster or a headerless .raw file
+      --scene FILE.iv       show this scene file instead; its first terrain node is the one that is measured
+  -t, --texture FILE        texture of the terrain
+  -a, --algorithm NAME      what draws it, roam by default:
+)";
+
+const char* const moreHelp = R"(
+      --spacing X[,Y]       distance between samples. Without it, and without a spacing in the file, the terrain
+                            spans one unit in x and y
+      --height-scale S      factor on the heights. Without it, 0..255 of an 8-bit map (0..65535 of a 16-bit map, lowest
+                            to highest of a map with fractions) becomes 0..0.051; 1 with --spacing or a file's own spacing
+
+Level of detail
+  -e, --pixel-error PX      greatest error on screen, in pixels (2)
+  -r, --triangle-count N    most triangles; 0: no limit (roam)
+  -g, --tile-size N         samples along the side of a tile (tiled algorithms)
+  -c, --culling             switch frustum culling on. Without it a height map is drawn without culling; a scene file
+                            keeps what it says
+
+Animation
+  -v, --animate             play the animation: a circle over the terrain, or --flight. In a window it starts again at its
+                            end, unless --frames, -p, --stats or -s asks for an end: then the program ends with it
+      --flight FILE         fly along this CSV file: time_ms,x,y,z,qx,qy,qz,qw; linear between positions, spherical between
+                            orientations. Implies -v
+      --record FILE         write the camera of every frame in the same format
+  -A, --animation-time MS   length of the animation (10000, or that of the flight, which is stretched to fit)
+  -F, --frame-time MS       duration of a frame (40)
+      --frames N            number of frames; without -F the whole animation is spread over them
+  -s, --synchronize         the animation lasts exactly -A: frames that are late are skipped. Without it every frame is drawn
+
+Output
+  -p, --profile FILE        a CSV row for every frame: frame,time_ms,frame_ms,select_ms,upload_ms,draw_ms,triangles,
+                            patches,error_px,resident_bytes
+      --stats               a JSON object on standard output at the end
+      --measure-error K     every K frames measure the error on screen of every sample in view
+      --offscreen[=WxH]     no window and no display (1024x768). One frame, unless -v, --flight or --frames asks for more
+      --output NAME         write the frames of --offscreen: frame-%04d.png
+  -f, --full-screen         start with a full screen
+      --help, --version
+
+Keys
+  W S forward, back   A D left, right   Q E up, down   arrows turn   PgUp PgDn roll   mouse drag looks around   wheel: speed
+  Keypad + -  pixel error         F  frustum culling      L  wireframe         Space  constant height over the ground
+  Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
+  Left Alt+Enter  full screen     Esc  quit
+
+Exit status: 0, 1 when data can't be read, drawn or written, 2 for a wrong command line.
+)";
+
+}  // namespace
+
+std::string help()
+{
+    std::string text = usage() + optionHelp;
+    for (const Algorithm& algorithm : algorithms()) {
+        std::string name(algorithm.name);
+        name.resize(16, ' ');
+        text += "                              " + name + std::string(algorithm.help) + "\n";
+    }
+    text.erase(text.size() - 1);
+    return text + moreHelp;
+}
+
+}  // namespace app

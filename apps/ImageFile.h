@@ -1,0 +1,17 @@
+// Pictures from and to files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/Result.h"
+#include "gl/HeadlessContext.h"
+
+namespace app {
+
+/// Reads a picture of 1 to 4 channels, 8 bits each afterwards, rows from top to bottom. Without OpenImageIO only binary PPM and PGM.
+terrain::Result<terrain::Image> readImage(const std::string& path);
+/// Writes a picture in the format that the name ends in. Without OpenImageIO only ".ppm". Returns what went wrong, if anything did.
+std::optional<terrain::Error> writeImage(const std::string& path, const terrain::Image& image);
+
+}  // namespace app

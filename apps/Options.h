@@ -1,0 +1,52 @@
+// The command line of SoTerrainTest.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <glm/vec2.hpp>
+
+#include "Algorithms.h"
+#include "base/Result.h"
+
+namespace app {
+
+struct Options {
+    std::string heightMap;                   ///< -h
+    std::string scene;                       ///< --scene
+    std::string texture;                     ///< -t
+    std::string profile;                     ///< -p
+    std::string flight;                      ///< --flight
+    std::string record;                      ///< --record
+    std::string output;                      ///< --output
+    const Algorithm* algorithm = nullptr;    ///< -a; null: roam for a height map, whatever a scene file holds for a scene
+    std::optional<double> animationTime;     ///< -A, milliseconds
+    std::optional<double> frameTime;         ///< -F, milliseconds
+    std::optional<double> pixelError;        ///< -e, pixels
+    std::optional<int> triangleCount;        ///< -r
+    std::optional<int> tileSize;             ///< -g, samples
+    std::optional<int> frames;               ///< --frames
+    std::optional<int> measureError;         ///< --measure-error: every so many frames
+    std::optional<glm::dvec2> spacing;       ///< --spacing
+    std::optional<double> heightScale;       ///< --height-scale
+    std::optional<glm::ivec2> offscreen;     ///< --offscreen, pixels
+    bool fullScreen = false;                 ///< -f
+    bool frustumCulling = false;             ///< -c
+    bool animate = false;                    ///< -v
+    bool synchronize = false;                ///< -s
+    bool stats = false;                      ///< --stats
+    bool help = false;
+    bool version = false;
+
+    static constexpr double defaultAnimationTime = 10000.0;
+    static constexpr double defaultFrameTime = 40.0;
+};
+
+/// Reads a command line as main() gets it. Error: an unknown option, a missing or bad value, options that contradict each other.
+terrain::Result<Options> parseOptions(int argc, char* const argv[]);
+/// One paragraph of options, for errors.
+std::string usage();
+/// Everything: options, keys, defaults.
+std::string help();
+
+}  // namespace app

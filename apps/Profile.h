@@ -1,0 +1,66 @@
+// What every frame cost: a row of CSV each, and a summary in JSON.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "MeasureError.h"
+#include "base/Result.h"
+
+namespace app {
+
+/// One frame as -p writes it. Values that the shape does not tell are empty there.
+struct FrameFigures {
+    int frame = 0;
+    double timeMs = 0.0;   ///< time in the animation
+    double frameMs = 0.0;  ///< wall clock, until GL has finished
+    std::uint64_t triangles = 0;
+    struct Terrain {  ///< known for this project's own nodes only
+        double selectMs = 0.0;
+        double uploadMs = 0.0;
+        double drawMs = 0.0;
+        std::uint64_t patches = 0;
+        double errorPixels = 0.0;
+        std::uint64_t memoryBytes = 0;
+        std::uint64_t bufferBytes = 0;
+    };
+    std::optional<Terrain> terrain;
+};
+
+/// Writes -p's file.
+class ProfileWriter {
+public:
+    /// Error: the file can't be written.
+    static terrain::Result<ProfileWriter> open(const std::string& path);
+    void write(const FrameFigures& figures);
+    /// False when something could not be written.
+    bool close();
+
+private:
+    std::ofstream file_;
+};
+
+/// Collects frames for --stats.
+class FrameStatistics {
+public:
+    void add(const FrameFigures& figures);
+    void add(const ErrorSample& error) { errors_.merge(error); }
+    void setStart(double loadMs, double firstFrameMs);
+    /// The JSON object, indented.
+    std::string json(const std::string& algorithm, const std::string& renderer) const;
+    const ErrorSample& errors() const { return errors_; }
+
+private:
+    std::vector<double> frame_, select_, upload_, draw_, triangles_;
+    double errorBound_ = 0.0;
+    std::uint64_t memoryBytes_ = 0;
+    std::uint64_t bufferBytes_ = 0;
+    double loadMs_ = 0.0;
+    double firstFrameMs_ = 0.0;
+    ErrorSample errors_;
+};
+
+}  // namespace app

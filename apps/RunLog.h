@@ -1,0 +1,51 @@
+// Everything that a run writes down: profile, recorded flight, statistics, measured errors.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "Flight.h"
+#include "FrameSchedule.h"
+#include "MeasureError.h"
+#include "Options.h"
+#include "Profile.h"
+#include "Scene.h"
+
+namespace app {
+
+class RunLog {
+public:
+    /// Opens the files that the options name. Error: one can't be written, or nothing can be measured.
+    static terrain::Result<RunLog> open(const Options& options, Scene& scene);
+
+    /// Milliseconds from the start of the program's work to the scene, and of its first frame.
+    void setStart(double loadMs, double firstFrameMs) { statistics_.setStart(loadMs, firstFrameMs); }
+    /// Notes a frame that has been drawn.
+    void frame(int frame, double timeMs, double frameMs, Scene& scene);
+    /// Whether this frame's error is to be measured after it.
+    bool measures(int frame) const { return meter_ && frame % every_ == 0; }
+    /// Measures; draw as ErrorMeter says.
+    std::optional<terrain::Error> measure(const std::function<void()>& draw);
+    /// Closes the files and prints the statistics. Returns what went wrong, if anything did.
+    std::optional<terrain::Error> finish(const Options& options, const Scene& scene, const std::string& renderer);
+
+private:
+    std::optional<ProfileWriter> profile_;
+    std::optional<FlightWriter> flight_;
+    FrameStatistics statistics_;
+    std::unique_ptr<ErrorMeter> meter_;
+    int every_ = 1;
+};
+
+/// The animation that the options ask for, over this scene, and its schedule. Error: an unreadable flight.
+struct Animation {
+    Flight flight;
+    FrameSchedule schedule;
+    static terrain::Result<Animation> make(const Options& options, const Scene& scene);
+};
+
+/// Milliseconds of a steady clock.
+double nowMs();
+
+}  // namespace app

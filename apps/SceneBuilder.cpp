@@ -1,0 +1,300 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <Inventor/SbViewportRegion.h>
+#include <Inventor/SoDB.h>
+#include <Inventor/SoInput.h>
+#include <Inventor/SoPath.h>
+#include <Inventor/actions/SoGetBoundingBoxAction.h>
+#include <Inventor/actions/SoSearchAction.h>
+#include <Inventor/errors/SoReadError.h>
+#include <Inventor/fields/SoSFBool.h>
+#include <Inventor/fields/SoSFFloat.h>
+#include <Inventor/fields/SoSFInt32.h>
+#include <Inventor/nodes/SoCoordinate3.h>
+#include <Inventor/nodes/SoDirectionalLight.h>
+#include <Inventor/nodes/SoIndexedFaceSet.h>
+#include <Inventor/nodes/SoMaterial.h>
+#include <Inventor/nodes/SoNormal.h>
+#include <Inventor/nodes/SoNormalBinding.h>
+#include <Inventor/nodes/SoPerspectiveCamera.h>
+#include <Inventor/nodes/SoQuadMesh.h>
+#include <Inventor/nodes/SoTexture2.h>
+#include <Inventor/nodes/SoTextureCoordinate2.h>
+#include <SoTerrain/SoHeightMap.h>
+#include <SoTerrain/SoTerrainShape.h>
+
+#include "Scene.h"
+#include "Texture.h"
+
+namespace app {
+
+using terrain::Error;
+using terrain::Result;
+
+/// Builds one scene; each step returns what went wrong, if anything did.
+class SceneBuilder {
+public:
+    explicit SceneBuilder(const Options& options) : options_(options) {}
+
+    std::optional<Error> fromHeightMap();
+    std::optional<Error> fromFile();
+    Scene take() { return std::move(scene_); }
+
+private:
+    std::optional<Error> addTerrain(const Algorithm& algorithm);
+    void addHeightMap();
+    std::optional<Error> addCoinArrays(Feed feed);
+    void addRoot();
+    void addCamera();
+    void addMaterial();
+    void setFields();
+    template <class Field, class Value>
+    void setField(const char* flag, const char* name, const std::optional<Value>& value);
+    SoPath* find(SoType type, bool derived) const;
+    void chooseTerrain();
+    void readGridOfScene();
+    void placeSceneCamera();
+
+    const Options& options_;
+    Scene scene_;
+};
+
+void SceneBuilder::addRoot()
+{
+    scene_.root_ = NodePtr(new SoSeparator);
+    scene_.root_->renderCaching = SoSeparator::OFF;
+    scene_.drawStyle_ = new SoDrawStyle;
+    scene_.root_->addChild(scene_.drawStyle_);
+}
+
+void SceneBuilder::addCamera()
+{
+    auto* camera = new SoPerspectiveCamera;
+    auto* light = new SoDirectionalLight;
+    light->direction.setValue(0.5f, 0.5f, -1.0f);
+    scene_.root_->addChild(camera);
+    scene_.root_->addChild(light);
+    scene_.camera_ = camera;
+    const float reach = std::max(scene_.size(), scene_.box_.getMax()[2] - scene_.box_.getMin()[2]);
+    camera->nearDistance = 0.001f * reach;
+    camera->farDistance = 3.0f * reach;
+    scene_.home_ = standardFlight(scene_.flightArea(), 1.0).at(0.0);
+    scene_.setPose(scene_.home_);
+}
+
+// White under a texture, which the light then shows in its own colours; the colour of earth without one.
+void SceneBuilder::addMaterial()
+{
+    auto* material = new SoMaterial;
+    const SbColor color = options_.texture.empty() ? SbColor(0.62f, 0.57f, 0.47f) : SbColor(1.0f, 1.0f, 1.0f);
+    material->diffuseColor = color;
+    material->ambientColor = color * 0.4f;
+    scene_.root_->addChild(material);
+}
+
+// A flag that names a field the shape does not have is said to have no effect, and the program goes on.
+template <class Field, class Value>
+void SceneBuilder::setField(const char* flag, const char* name, const std::optional<Value>& value)
+{
+    if (!value || !scene_.terrain_) return;
+    if (auto* field = dynamic_cast<Field*>(scene_.terrain_->getField(name))) field->setValue(*value);
+    else std::fprintf(stderr, "SoTerrainTest: %s has no effect on %s\n", flag, scene_.algorithm_.c_str());
+}
+
+void SceneBuilder::setFields()
+{
+    const std::optional<float> error = options_.pixelError ? std::optional(float(*options_.pixelError)) : std::nullopt;
+    setField<SoSFFloat>("-e", "pixelError", error);
+    setField<SoSFInt32>("-r", "triangleCount", options_.triangleCount);
+    setField<SoSFInt32>("-g", "tileSize", options_.tileSize);
+    if (options_.frustumCulling) setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(TRUE));
+    else if (options_.scene.empty() && scene_.terrain_->getField("frustumCulling")) {
+        setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(FALSE));
+    }
+}
+
+void SceneBuilder::addHeightMap()
+{
+    const TerrainGrid& grid = *scene_.grid_;
+    auto* map = new SoHeightMap;
+    map->filename = options_.heightMap.c_str();
+    map->spacing.setValue(float(grid.spacing.x), float(grid.spacing.y));
+    map->heightScale = float(grid.heightScale);
+    map->heightOffset = float(grid.heightOffset);
+    scene_.root_->addChild(map);
+}
+
+std::optional<Error> SceneBuilder::addCoinArrays(Feed feed)
+{
+    const TerrainGrid& grid = *scene_.grid_;
+    if (!grid.source->map() || double(grid.columns) * grid.rows > maxCoinSamples) {
+        return Error{options_.heightMap, "a map that fits into memory and 32-bit indices, for Coin's own shapes",
+                     std::to_string(grid.columns) + "x" + std::to_string(grid.rows)};
+    }
+    SoCoordinate3* coordinates = makeCoordinates(grid);
+    auto* binding = new SoNormalBinding;
+    binding->value = feed == Feed::QuadMesh ? SoNormalBinding::PER_VERTEX : SoNormalBinding::PER_VERTEX_INDEXED;
+    scene_.root_->addChild(coordinates);
+    scene_.root_->addChild(binding);
+    scene_.root_->addChild(makeNormals(*coordinates, grid.columns, grid.rows));
+    const glm::dvec2 step(1.0 / (grid.columns - 1), 1.0 / (grid.rows - 1));
+    scene_.root_->addChild(makeTextureCoordinates(grid.columns, grid.rows, step));
+    return std::nullopt;
+}
+
+std::optional<Error> SceneBuilder::addTerrain(const Algorithm& algorithm)
+{
+    scene_.algorithm_ = algorithm.name;
+    if (algorithm.feed == Feed::HeightMap) addHeightMap();
+    else if (auto problem = addCoinArrays(algorithm.feed)) return problem;
+    if (algorithm.feed == Feed::QuadMesh) scene_.terrain_ = makeQuadMesh(*scene_.grid_);
+    else if (algorithm.feed == Feed::IndexedFaceSet) scene_.terrain_ = makeFaceSet(*scene_.grid_);
+    else {
+        const SoType type = SoType::fromName(algorithm.className);
+        if (!type.canCreateInstance()) return Error{"-a", "an algorithm of this build", std::string(algorithm.name)};
+        scene_.terrain_ = static_cast<SoNode*>(type.createInstance());
+    }
+    auto* group = new SoSeparator;
+    group->addChild(scene_.terrain_);
+    scene_.root_->addChild(group);
+    auto* path = new SoPath(scene_.root_.get());
+    path->append(group);
+    path->append(scene_.terrain_);
+    scene_.terrainPath_ = NodePtr(path);
+    return std::nullopt;
+}
+
+std::optional<Error> SceneBuilder::fromHeightMap()
+{
+    auto source = terrain::openHeightFile(options_.heightMap, {});
+    if (!source) return source.error();
+    auto grid = placeGrid(std::move(source).value(), options_.spacing, options_.heightScale);
+    if (!grid) return grid.error();
+    scene_.grid_ = std::move(grid).value();
+    scene_.box_.extendBy(SbVec3f(0.0f, 0.0f, float(scene_.grid_->minimum)));
+    const SbVec3f end = scene_.grid_->point(scene_.grid_->columns - 1, scene_.grid_->rows - 1, 0.0f);
+    scene_.box_.extendBy(SbVec3f(end[0], end[1], float(scene_.grid_->maximum)));
+    addRoot();
+    addCamera();
+    addMaterial();
+    if (!options_.texture.empty()) {
+        auto texture = loadTexture(options_.texture);
+        if (!texture) return texture.error();
+        scene_.root_->addChild(texture.value());
+    }
+    if (auto problem = addTerrain(options_.algorithm ? *options_.algorithm : *findAlgorithm("roam"))) return problem;
+    setFields();
+    // The node has read the file itself; a second copy is kept only for those who need it.
+    if (scene_.terrain_->isOfType(SoTerrainShape::getClassTypeId()) && !options_.measureError) scene_.grid_->source.reset();
+    return std::nullopt;
+}
+
+SoPath* SceneBuilder::find(SoType type, bool derived) const
+{
+    SoSearchAction search;
+    search.setType(type, derived);
+    search.setInterest(SoSearchAction::FIRST);
+    search.apply(scene_.root_.get());
+    SoPath* path = search.getPath();
+    if (path) path->ref();
+    return path;
+}
+
+// The first of our shapes, or else the first shape.
+void SceneBuilder::chooseTerrain()
+{
+    SoPath* path = find(SoTerrainShape::getClassTypeId(), true);
+    if (!path) path = find(SoShape::getClassTypeId(), true);
+    if (!path) return;
+    scene_.terrainPath_ = NodePtr(path);
+    path->unref();
+    scene_.terrain_ = static_cast<SoFullPath*>(path)->getTail();
+    scene_.algorithm_ = scene_.terrain_->getTypeId().getName().getString();
+}
+
+// A scene whose terrain stands on a file can be measured against that file.
+void SceneBuilder::readGridOfScene()
+{
+    SoPath* path = find(SoHeightMap::getClassTypeId(), true);
+    if (!path || !scene_.terrain_) return;
+    const NodePtr<SoPath> held(path);
+    path->unref();
+    const auto* node = static_cast<SoHeightMap*>(static_cast<SoFullPath*>(path)->getTail());
+    const SbVec2f spacing = node->spacing.getValue(), origin = node->origin.getValue();
+    if (origin != SbVec2f(0.0f, 0.0f)) return;
+    terrain::HeightFileOptions how;
+    how.channel = node->channel.getValue();
+    how.rawSize = {node->rawSize.getValue()[0], node->rawSize.getValue()[1]};
+    how.rawType = terrain::RawType(node->rawType.getValue());
+    if (!std::isnan(node->noData.getValue())) how.noData = node->noData.getValue();
+    auto source = terrain::openHeightFile(node->filename.getValue().getString(), how);
+    if (!source) return;
+    const glm::dvec2 step = spacing[0] > 0.0f ? glm::dvec2(spacing[0], spacing[1]) : source.value()->extent().spacing;
+    auto grid = placeGrid(std::move(source).value(), step, node->heightScale.getValue());
+    if (!grid) return;
+    scene_.grid_ = std::move(grid).value();
+    const double offset = node->heightOffset.getValue();
+    scene_.grid_->heightOffset = offset;
+    scene_.grid_->minimum += offset;
+    scene_.grid_->maximum += offset;
+}
+
+// The camera of the file, or one that sees everything: from the south and above where there is a terrain, as a viewer's elsewhere.
+void SceneBuilder::placeSceneCamera()
+{
+    SoPath* path = find(SoCamera::getClassTypeId(), true);
+    if (path) {
+        const NodePtr<SoPath> held(path);
+        path->unref();
+        scene_.camera_ = static_cast<SoCamera*>(static_cast<SoFullPath*>(path)->getTail());
+        scene_.ownClipping_ = scene_.camera_->nearDistance.isDefault() && scene_.camera_->farDistance.isDefault();
+    } else {
+        scene_.camera_ = new SoPerspectiveCamera;
+        scene_.root_->insertChild(scene_.camera_, 0);
+        if (scene_.terrain_ && scene_.terrain_->isOfType(SoTerrainShape::getClassTypeId())) {
+            scene_.camera_->orientation = lookAlong(SbVec3f(), SbVec3f(0.0f, 1.0f, -0.6f)).orientation;
+        }
+        scene_.camera_->viewAll(scene_.root_.get(), SbViewportRegion(1024, 768));
+        scene_.ownClipping_ = true;
+    }
+    scene_.home_ = scene_.pose();
+    scene_.setPose(scene_.home_);
+}
+
+std::optional<Error> SceneBuilder::fromFile()
+{
+    SoInput input;
+    if (!input.openFile(options_.scene.c_str(), TRUE)) {
+        return Error{options_.scene, "a readable scene file", "no such file, or no permission"};
+    }
+    SoSeparator* content = SoDB::readAll(&input);
+    if (!content) return Error{options_.scene, "an Inventor scene", "a file that Coin can't read"};
+    addRoot();
+    scene_.root_->addChild(content);
+    if (SoPath* light = find(SoLight::getClassTypeId(), true)) {
+        light->unref();
+    } else {
+        auto* sun = new SoDirectionalLight;
+        sun->direction.setValue(0.5f, 0.5f, -1.0f);
+        scene_.root_->insertChild(sun, 0);
+    }
+    chooseTerrain();
+    setFields();
+    SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
+    bounds.apply(scene_.root_.get());
+    scene_.box_ = bounds.getBoundingBox();
+    readGridOfScene();
+    placeSceneCamera();
+    return std::nullopt;
+}
+
+Result<Scene> Scene::build(const Options& options)
+{
+    SceneBuilder builder(options);
+    if (auto problem = options.scene.empty() ? builder.fromHeightMap() : builder.fromFile()) return *problem;
+    return builder.take();
+}
+
+}  // namespace app

@@ -1,0 +1,60 @@
+// Shows a height map or a scene file with level of detail, in a window or without a display, and measures it.
+#include <cstdio>
+#include <cstdlib>
+
+#include <Inventor/SoDB.h>
+#include <Inventor/SoInteraction.h>
+#include <Inventor/nodekits/SoNodeKit.h>
+#include <SoTerrain/SoTerrain.h>
+
+#include "Offscreen.h"
+#include "Options.h"
+#include "RunLog.h"
+#include "Scene.h"
+#include "Window.h"
+
+namespace {
+
+int fail(const terrain::Error& error)
+{
+    std::fprintf(stderr, "SoTerrainTest: %s\n", error.message().c_str());
+    return EXIT_FAILURE;
+}
+
+int show(const app::Options& options)
+{
+    const double started = app::nowMs();
+    // The window system comes first: without one there is no reason to read a large map.
+    if (!options.offscreen) {
+        if (auto problem = app::openDisplay("SoTerrainTest")) return fail(*problem);
+    }
+    SoDB::init();
+    SoNodeKit::init();
+    SoInteraction::init();
+    SoTerrain::init();
+    auto scene = app::Scene::build(options);
+    if (!scene) return fail(scene.error());
+    const auto run = options.offscreen ? app::runOffscreen : app::runWindow;
+    if (auto problem = run(options, scene.value(), started)) return fail(*problem);
+    return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    const auto options = app::parseOptions(argc, argv);
+    if (!options) {
+        std::fprintf(stderr, "SoTerrainTest: %s\n%s", options.error().message().c_str(), app::usage().c_str());
+        return 2;
+    }
+    if (options.value().help) {
+        std::fputs(app::help().c_str(), stdout);
+        return EXIT_SUCCESS;
+    }
+    if (options.value().version) {
+        std::printf("SoTerrainTest %s\n", SoTerrain::getVersion());
+        return EXIT_SUCCESS;
+    }
+    return show(options.value());
+}

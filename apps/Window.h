@@ -1,0 +1,17 @@
+// The window of SoTerrainTest.
+#pragma once
+
+#include <optional>
+
+#include "Options.h"
+#include "Scene.h"
+#include "base/Result.h"
+
+namespace app {
+
+/// Connects to the display, once, before anything else of this header. Error: there is no display, or this build has no SoQt.
+std::optional<terrain::Error> openDisplay(const char* program);
+/// Shows the scene until the user or the options end it. As runOffscreen() otherwise.
+std::optional<terrain::Error> runWindow(const Options& options, Scene& scene, double startedMs);
+
+}  // namespace app
