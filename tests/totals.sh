@@ -9,9 +9,9 @@ for result in "$1"/**/*.trs; do
     log=${result%.trs}.log
     ok=0 bad=0 skip=0
     if [ -f "$log" ] && grep -q '^\[==========\] Running' "$log"; then
-        ok=$(grep -c '^\[       OK \] .* ms)$' "$log")
-        bad=$(grep -c '^\[  FAILED  \] .* ms)$' "$log")
-        skip=$(grep -c '^\[  SKIPPED \] .* ms)$' "$log")
+        ok=$(grep -c '\[       OK \] .* ms)$' "$log")
+        bad=$(grep -c '\[  FAILED  \] .* ms)$' "$log")
+        skip=$(grep -c '\[  SKIPPED \] .* ms)$' "$log")
         if [ "$bad" -eq 0 ] && grep -q '^:test-result: \(FAIL\|ERROR\|XPASS\)' "$result"; then bad=1; fi
     else
         ok=$(grep -c '^:test-result: PASS' "$result")
