@@ -59,7 +59,7 @@ const char usage[] =
     "  --rivers N                steps of river erosion (80)\n"
     "  --uplift U                rise of the mountains in such a step, in cells (1)\n"
     "  --creep D                 soil that creeps in such a step, in square cells; more makes valleys wider (4)\n"
-    "  --droplets N              droplets of rain (200000)\n"
+    "  --droplets N              droplets of rain (100000)\n"
     "  --thermal N               steps of sliding slopes (10)\n"
     "  --talus S                 steepest slope that stays, rise over run (0.8)\n"
     "  --help, --version\n";
@@ -126,7 +126,7 @@ Settings parse(int argc, char** argv)
     settings.rivers.steps = 80;
     settings.rivers.uplift = 1.0;
     settings.rivers.creep = 4.0;
-    settings.droplets.droplets = 200000;
+    settings.droplets.droplets = 100000;
     settings.thermal.talus = settings.rivers.talus = 0.8;
     const std::vector<Option> options = optionsFor(settings);
     std::vector<option> table;
@@ -261,6 +261,15 @@ Result<HeightMap> makeTerrain(const Settings& settings)
     auto map = makeFractalMap(settings.fractal);
     if (map && settings.rivers.steps > 0) map = carve(map.value(), settings);
     if (map) map = erodeByDroplets(std::move(map).value(), settings.droplets);
+    // The heaps that droplets leave in valleys are washed out again, and creep smooths what is left.
+    if (map && settings.rivers.steps > 0) {
+        terrain::RiverParameters rivers = settings.rivers;
+        rivers.steps = 2;
+        rivers.uplift = 0.0;
+        rivers.creep *= 0.25;
+        const HeightMap level = mapped(map.value(), [](double, int, int) { return 0.0; });
+        map = erodeByRivers(std::move(map).value(), level, rivers);
+    }
     if (map) map = erodeThermally(std::move(map).value(), settings.thermal);
     return map;
 }

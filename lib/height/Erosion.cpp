@@ -45,13 +45,34 @@ std::optional<Error> problemOf(std::initializer_list<Range> ranges)
 constexpr std::array<std::array<int, 2>, 8> neighbours{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
 
 
+/// A small generator of its own (PCG-XSH-RR, O'Neill 2014), since those of the standard library differ in their distributions.
+class Random {
+public:
+    explicit Random(std::uint32_t seed) : state_(seed * 6364136223846793005ull + 1442695040888963407ull) { next(); }
+
+    /// In [0, 1), of 24 bits.
+    float unit() { return float(next() >> 8) * (1.0f / 16777216.0f); }
+
+private:
+    std::uint32_t next()
+    {
+        const std::uint64_t old = state_;
+        state_ = old * 6364136223846793005ull + 1442695040888963407ull;
+        const auto shifted = std::uint32_t(((old >> 18) ^ old) >> 27);
+        const auto turn = unsigned(old >> 59);
+        return (shifted >> turn) | (shifted << ((32 - turn) & 31));
+    }
+
+    std::uint64_t state_;
+};
+
 /// Which way the water of every sample goes, and in which order samples follow from the border upwards.
 class Drainage {
 public:
     explicit Drainage(const HeightMap& map) : map_(map), flooded_(map.heights.size()), receiver_(map.heights.size(), none) {}
 
     void flood();
-    void drain();
+    void drain(Random& random);
     const std::vector<std::size_t>& upwards() const { return order_; }
     std::size_t receiver(std::size_t sample) const { return receiver_[sample]; }
     double distance(std::size_t from, std::size_t to) const;
@@ -115,15 +136,20 @@ void Drainage::flood()
     }
 }
 
-/// Turns each sample to its steepest neighbour; the flood's own direction remains where the water stands level.
-void Drainage::drain()
+/// Turns each sample to its steepest neighbour; the flood's own direction remains where the water stands level. Diagonals count as
+/// between 1 and 2 long, by chance, or else all valleys would run in eight directions (rho 8: Fairfield and Leymarie, "Drainage networks
+/// from grid digital elevation models", Water Resources Research 27, 1991).
+void Drainage::drain(Random& random)
 {
     for (const std::size_t sample : order_) {
         if (receiver_[sample] == sample) continue;
+        const double stretch = (2.0 - random.unit()) / std::sqrt(2.0);
         double steepest = 0.0;
         forNeighbours(sample, [&](std::size_t next) {
             if (receiver_[next] == none) return;
-            const double slope = (double(flooded_[sample]) - flooded_[next]) / distance(sample, next);
+            const auto gap = next > sample ? next - sample : sample - next;
+            const bool diagonal = gap != 1 && gap != std::size_t(map_.columns);
+            const double slope = (double(flooded_[sample]) - flooded_[next]) / (distance(sample, next) * (diagonal ? stretch : 1.0));
             if (slope <= steepest) return;
             steepest = slope;
             receiver_[sample] = next;
@@ -147,11 +173,11 @@ std::vector<float> Drainage::drainedSamples() const
     return samples;
 }
 
-void stepRivers(HeightMap& map, const HeightMap& upliftMap, const RiverParameters& p)
+void stepRivers(HeightMap& map, const HeightMap& upliftMap, const RiverParameters& p, Random& random)
 {
     Drainage drainage(map);
     drainage.flood();
-    drainage.drain();
+    drainage.drain(random);
     const std::vector<float> drained = drainage.drainedSamples();
     const double cellArea = map.spacing.x * map.spacing.y;
     for (const std::size_t sample : drainage.upwards()) {
@@ -166,30 +192,47 @@ void stepRivers(HeightMap& map, const HeightMap& upliftMap, const RiverParameter
 }
 
 
-/// A small generator of its own (PCG-XSH-RR, O'Neill 2014), since those of the standard library differ in their distributions.
-class Random {
-public:
-    explicit Random(std::uint32_t seed) : state_(seed * 6364136223846793005ull + 1442695040888963407ull) { next(); }
-
-    /// In [0, 1), of 24 bits.
-    float unit() { return float(next() >> 8) * (1.0f / 16777216.0f); }
-
-private:
-    std::uint32_t next()
-    {
-        const std::uint64_t old = state_;
-        state_ = old * 6364136223846793005ull + 1442695040888963407ull;
-        const auto shifted = std::uint32_t(((old >> 18) ^ old) >> 27);
-        const auto turn = unsigned(old >> 59);
-        return (shifted >> turn) | (shifted << ((32 - turn) & 31));
+/// Soil creeps: dz/dt = D * (d2z/dx2 + d2z/dy2), in as many explicit parts as keep that stable. The border stays.
+void creep(HeightMap& map, double diffusion)
+{
+    const double weightX = diffusion / (map.spacing.x * map.spacing.x);
+    const double weightY = diffusion / (map.spacing.y * map.spacing.y);
+    const int parts = int(std::ceil((weightX + weightY) / 0.4));
+    const auto x = float(weightX / std::max(parts, 1));
+    const auto y = float(weightY / std::max(parts, 1));
+    const auto columns = std::size_t(map.columns);
+    std::vector<float> before;
+    for (int part = 0; part < parts; ++part) {
+        before = map.heights;
+        for (int row = 1; row < map.rows - 1; ++row)
+            for (int column = 1; column < map.columns - 1; ++column) {
+                const std::size_t i = std::size_t(row) * columns + std::size_t(column);
+                const float change = x * (before[i - 1] + before[i + 1] - 2.0f * before[i]) +
+                                     y * (before[i - columns] + before[i + columns] - 2.0f * before[i]);
+                if (!std::isnan(change)) map.heights[i] += change;
+            }
     }
+}
 
-    std::uint64_t state_;
-};
+/// A border sample that stands above the one behind it would wall the land in.
+void lowerBorder(HeightMap& map)
+{
+    const auto lower = [&](int column, int row) {
+        const float behind = map.at(std::clamp(column, 1, map.columns - 2), std::clamp(row, 1, map.rows - 2));
+        float& height = map.heights[std::size_t(row) * std::size_t(map.columns) + std::size_t(column)];
+        if (behind < height) height = behind;
+    };
+    if (map.columns < 3 || map.rows < 3) return;
+    for (int column = 0; column < map.columns; ++column) lower(column, 0), lower(column, map.rows - 1);
+    for (int row = 0; row < map.rows; ++row) lower(0, row), lower(map.columns - 1, row);
+}
 
 class Rain {
 public:
-    Rain(HeightMap& map, const DropletParameters& parameters);
+    Rain(HeightMap& map, const DropletParameters& parameters)
+        : map_(map), p_(parameters), cell_(float(0.5 * (map.spacing.x + map.spacing.y)))
+    {
+    }
     void fall(Random& random);
 
 private:
@@ -198,37 +241,17 @@ private:
         float slopeX;
         float slopeY;
     };
-    struct Dab {
-        int column;
-        int row;
-        float weight;
-    };
 
     bool isInside(float x, float y) const { return x >= 0.0f && y >= 0.0f && x < float(map_.columns - 1) && y < float(map_.rows - 1); }
     float& at(int column, int row) { return map_.heights[std::size_t(row) * std::size_t(map_.columns) + std::size_t(column)]; }
     Surface surface(float x, float y);
-    void deposit(float x, float y, float amount);
-    void erode(float x, float y, float amount);
+    void change(float x, float y, float amount);
 
     HeightMap& map_;
     DropletParameters p_;
     float cell_;  ///< distance of a step, in the unit of heights
-    std::vector<Dab> brush_;
+    std::vector<float> bell_;  ///< of the last change, kept for its memory
 };
-
-Rain::Rain(HeightMap& map, const DropletParameters& parameters)
-    : map_(map), p_(parameters), cell_(float(0.5 * (map.spacing.x + map.spacing.y)))
-{
-    float total = 0.0f;
-    for (int row = -p_.radius; row <= p_.radius; ++row)
-        for (int column = -p_.radius; column <= p_.radius; ++column) {
-            const float weight = float(p_.radius) + 1.0f - std::sqrt(float(row * row + column * column));
-            if (weight <= 0.0f) continue;
-            brush_.push_back({column, row, weight});
-            total += weight;
-        }
-    for (Dab& dab : brush_) dab.weight /= total;
-}
 
 Rain::Surface Rain::surface(float x, float y)
 {
@@ -241,25 +264,25 @@ Rain::Surface Rain::surface(float x, float y)
             ((nw - sw) * (1 - u) + (ne - se) * u) / cell_};
 }
 
-void Rain::deposit(float x, float y, float amount)
+/// Adds `amount` around (x, y) under a round bell. It is centred between the samples, not on one, or lattices of mounds would grow.
+void Rain::change(float x, float y, float amount)
 {
-    const int column = int(x);
-    const int row = int(y);
-    const float u = x - float(column);
-    const float v = y - float(row);
-    at(column, row) += amount * (1 - u) * (1 - v);
-    at(column + 1, row) += amount * u * (1 - v);
-    at(column, row + 1) += amount * (1 - u) * v;
-    at(column + 1, row + 1) += amount * u * v;
-}
-
-void Rain::erode(float x, float y, float amount)
-{
-    for (const Dab& dab : brush_) {
-        const int column = int(x) + dab.column;
-        const int row = int(y) + dab.row;
-        if (column >= 0 && column < map_.columns && row >= 0 && row < map_.rows) at(column, row) -= amount * dab.weight;
-    }
+    const float reach = float(p_.radius) + 1.0f;
+    const int firstColumn = std::max(0, int(std::ceil(x - reach))), lastColumn = std::min(map_.columns - 1, int(x + reach));
+    const int firstRow = std::max(0, int(std::ceil(y - reach))), lastRow = std::min(map_.rows - 1, int(y + reach));
+    float total = 0.0f;
+    bell_.clear();
+    for (int row = firstRow; row <= lastRow; ++row)
+        for (int column = firstColumn; column <= lastColumn; ++column) {
+            const float dx = (float(column) - x) / reach;
+            const float dy = (float(row) - y) / reach;
+            const float part = std::max(0.0f, 1.0f - dx * dx - dy * dy);
+            bell_.push_back(part * part);
+            total += bell_.back();
+        }
+    std::size_t i = 0;
+    for (int row = firstRow; row <= lastRow; ++row)
+        for (int column = firstColumn; column <= lastColumn; ++column) at(column, row) += amount * bell_[i++] / total;
 }
 
 void Rain::fall(Random& random)
@@ -287,19 +310,19 @@ void Rain::fall(Random& random)
             // Uphill: fill the hollow, but no higher than its rim.
             const float amount = drop < 0.0f ? std::min(-drop, sediment) : (sediment - capacity * cell_) * float(p_.deposition);
             sediment -= amount;
-            deposit(x, y, amount);
+            change(x, y, amount);
         } else {
             // No deeper than the next point lies, or the droplet would dig a pit.
             const float amount = std::min((capacity * cell_ - sediment) * float(p_.erosion), drop);
             sediment += amount;
-            erode(x, y, amount);
+            change(x, y, -amount);
         }
         speed = std::sqrt(std::max(0.0f, speed * speed + 4.0f * drop / cell_));
         water *= 1.0f - float(p_.evaporation);
         x = nextX;
         y = nextY;
     }
-    if (isInside(x, y)) deposit(x, y, sediment);
+    if (isInside(x, y)) change(x, y, sediment);
 }
 
 
@@ -345,9 +368,15 @@ Result<HeightMap> erodeByRivers(HeightMap map, const HeightMap& upliftMap, const
     if (const auto problem = problemOf({{"steps", double(p.steps), 0, 1e6},
                                         {"uplift", p.uplift, -1e6, 1e6},
                                         {"erosion", p.erosion, 0, 1e6},
+                                        {"creep", p.creep, 0, 1000 * map.spacing.x * map.spacing.y},
                                         {"talus", p.talus, 0, 1e6}}))
         return *problem;
-    for (int step = 0; step < p.steps; ++step) stepRivers(map, upliftMap, p);
+    Random random(1);
+    for (int step = 0; step < p.steps; ++step) {
+        stepRivers(map, upliftMap, p, random);
+        creep(map, p.creep);
+        lowerBorder(map);
+    }
     return map;
 }
 
