@@ -14,7 +14,6 @@
 #include <string_view>
 #include <vector>
 
-#include <OpenImageIO/half.h>
 #include <OpenImageIO/imageio.h>
 
 #include "height/HeightFile.h"
@@ -60,11 +59,6 @@ bool toDoubles(OIIO::TypeDesc type, const void* from, std::vector<double>& to)
     case OIIO::TypeDesc::INT64: widen<std::int64_t>(from, to); return true;
     case OIIO::TypeDesc::FLOAT: widen<float>(from, to); return true;
     case OIIO::TypeDesc::DOUBLE: widen<double>(from, to); return true;
-    case OIIO::TypeDesc::HALF: {
-        const half* samples = static_cast<const half*>(from);
-        for (std::size_t i = 0; i < to.size(); ++i) to[i] = double(float(samples[i]));
-        return true;
-    }
     default: return false;
     }
 }
@@ -80,7 +74,7 @@ bool jpegEnds(const std::string& path)
     return end != std::string::npos && (scan == std::string::npos || end > scan);
 }
 
-/// Reads `count` rows of one channel, counted from the top, in the channel's own type.
+/// Reads `count` rows of one channel, counted from the top, as `type`.
 bool readRows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel, OIIO::TypeDesc type, int firstRow, int count, void* rows)
 {
     const int begin = spec.y + firstRow;
@@ -94,7 +88,9 @@ Result<HeightMap> decode(const std::string& path, OIIO::ImageInput& input, const
 {
     auto builder = HeightMapBuilder::create(path, spec.width, spec.height, options);
     if (!builder) return builder.error();
-    const OIIO::TypeDesc type = spec.channelformat(channel);
+    // In the channel's own type nothing is converted, hence nothing is normalised; every half is a float.
+    OIIO::TypeDesc type = spec.channelformat(channel);
+    if (type == OIIO::TypeDesc::HALF) type = OIIO::TypeDesc::FLOAT;
     builder.value().setFloatingPoint(type.is_floating_point());
 
     const int chunk = spec.tile_width > 0 ? spec.tile_height : 64;
