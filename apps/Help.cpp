@@ -27,7 +27,7 @@ Level of detail
 
 Animation
   -v, --animate             play the animation: a circle over the terrain, or --flight. In a window it starts again at its
-                            end, unless --frames, -p, --stats or -s asks for an end: then the program ends with it
+                            end, unless --frames, -p, --stats, --record or --measure-error wants an end: then the program ends too
       --flight FILE         fly along this CSV file: time_ms,x,y,z,qx,qy,qz,qw; linear between positions, spherical between
                             orientations. Implies -v
       --record FILE         write the camera of every frame in the same format

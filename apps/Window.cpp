@@ -4,7 +4,79 @@
 
 #include "Window.h"
 
-#ifndef HAVE_SOQT
+#ifdef HAVE_SOQT
+
+#include <cstdio>
+#include <cstdlib>
+
+#include <Inventor/Qt/SoQt.h>
+#include <QSurfaceFormat>
+#include <QWidget>
+
+#include "FlyArea.h"
+#include "RunLog.h"
+
+namespace app {
+
+using terrain::Error;
+
+namespace {
+
+const char* const noDisplay = "no display: use --offscreen";
+
+// Qt aborts when it can't use the display; a message and an exit status serve better.
+void showMessage(QtMsgType type, const QMessageLogContext&, const QString& text)
+{
+    if (type == QtDebugMsg || type == QtInfoMsg) return;
+    std::fprintf(stderr, "SoTerrainTest: %s\n", text.toLocal8Bit().constData());
+    if (type != QtFatalMsg) return;
+    std::fprintf(stderr, "SoTerrainTest: %s\n", noDisplay);
+    std::_Exit(EXIT_FAILURE);
+}
+
+bool isSet(const char* variable)
+{
+    const char* value = std::getenv(variable);
+    return value && *value;
+}
+
+
+}  // namespace
+
+std::optional<Error> openDisplay(const char* program)
+{
+    if (!isSet("DISPLAY") && !isSet("WAYLAND_DISPLAY") && !isSet("QT_QPA_PLATFORM")) return Error{noDisplay, "", ""};
+    qInstallMessageHandler(showMessage);
+    // Coin needs the fixed functions of a compatibility profile.
+    QSurfaceFormat format;
+    format.setProfile(QSurfaceFormat::CompatibilityProfile);
+    format.setDepthBufferSize(24);
+    QSurfaceFormat::setDefaultFormat(format);
+    return SoQt::init(program) ? std::nullopt : std::optional(Error{noDisplay, "", ""});
+}
+
+std::optional<Error> runWindow(const Options& options, Scene& scene, double startedMs)
+{
+    auto animation = Animation::make(options, scene);
+    if (!animation) return animation.error();
+    auto log = RunLog::open(options, scene);
+    if (!log) return log.error();
+    QWidget* top = SoQt::getTopLevelWidget();
+    FlyArea area(top, options, scene, log.value(), animation.value(), nowMs() - startedMs);
+    top->resize(1024, 768);
+    area.setTitle("SoTerrainTest");
+    area.setWindowCloseCallback([](void*, SoQtComponent*) { SoQt::exitMainLoop(); });
+    area.show();
+    SoQt::show(top);
+    if (options.fullScreen) area.toggleFullScreen();
+    SoQt::mainLoop();
+    if (area.problem()) return area.problem();
+    return log.value().finish(options, scene, area.renderer());
+}
+
+}  // namespace app
+
+#else
 
 namespace app {
 

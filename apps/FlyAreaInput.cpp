@@ -1,0 +1,197 @@
+// Keys and mouse of the render area.
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#ifdef HAVE_SOQT
+
+#include <algorithm>
+#include <cmath>
+
+#include <Inventor/Qt/SoQt.h>
+#include <Inventor/fields/SoSFBool.h>
+#include <Inventor/fields/SoSFFloat.h>
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QScreen>
+#include <QWheelEvent>
+#include <QWidget>
+
+#include "FlyArea.h"
+
+namespace app {
+
+namespace {
+
+struct SteeringKey {
+    int key;
+    FlyAxis axis;
+    float amount;
+};
+
+constexpr SteeringKey steeringKeys[] = {
+    {Qt::Key_W, FlyAxis::Forward, 1.0f},   {Qt::Key_S, FlyAxis::Forward, -1.0f}, {Qt::Key_D, FlyAxis::Right, 1.0f},
+    {Qt::Key_A, FlyAxis::Right, -1.0f},    {Qt::Key_Q, FlyAxis::Up, 1.0f},       {Qt::Key_E, FlyAxis::Up, -1.0f},
+    {Qt::Key_Left, FlyAxis::Turn, 1.0f},   {Qt::Key_Right, FlyAxis::Turn, -1.0f}, {Qt::Key_Up, FlyAxis::Pitch, 1.0f},
+    {Qt::Key_Down, FlyAxis::Pitch, -1.0f}, {Qt::Key_PageUp, FlyAxis::Roll, 1.0f}, {Qt::Key_PageDown, FlyAxis::Roll, -1.0f},
+};
+
+constexpr float errorStep = 1.25f;
+constexpr float radiansPerPixel = 0.004f;
+const char* const recordFile = "soterrain-flight.csv";
+
+}  // namespace
+
+void FlyArea::processEvent(QEvent* event)
+{
+    switch (event->type()) {
+    case QEvent::KeyPress:
+    case QEvent::KeyRelease: {
+        const auto& key = static_cast<const QKeyEvent&>(*event);
+        const bool press = event->type() == QEvent::KeyPress;
+        if (key.isAutoRepeat() && !(press && (key.key() == Qt::Key_Plus || key.key() == Qt::Key_Minus))) return;
+        if (steer(key, press) || (press && command(key))) return;
+        break;
+    }
+    case QEvent::FocusOut: camera_.releaseAll(); break;
+    case QEvent::MouseButtonPress:
+    case QEvent::MouseButtonRelease:
+    case QEvent::MouseMove:
+        if (mouse(static_cast<const QMouseEvent&>(*event))) return;
+        break;
+    case QEvent::Wheel: {
+        const int steps = static_cast<const QWheelEvent&>(*event).angleDelta().y();
+        camera_.changeSpeed(std::pow(1.2f, float(steps) / 120.0f));
+        return;
+    }
+    default: break;
+    }
+    SoQtRenderArea::processEvent(event);
+}
+
+bool FlyArea::steer(const QKeyEvent& event, bool press)
+{
+    const auto known = std::find_if(std::begin(steeringKeys), std::end(steeringKeys),
+                                    [&](const SteeringKey& steering) { return steering.key == event.key(); });
+    if (known == std::end(steeringKeys)) return false;
+    camera_.push(known->axis, press ? known->amount : -known->amount);
+    takeOver();
+    return true;
+}
+
+bool FlyArea::command(const QKeyEvent& event)
+{
+    switch (event.key()) {
+    case Qt::Key_Plus: scalePixelError(errorStep); break;
+    case Qt::Key_Minus: scalePixelError(1.0f / errorStep); break;
+    case Qt::Key_F:
+        if (auto* culling = scene_.terrain() ? dynamic_cast<SoSFBool*>(scene_.terrain()->getField("frustumCulling")) : nullptr) {
+            culling->setValue(!culling->getValue());
+        }
+        break;
+    case Qt::Key_L: scene_.setWireframe(!scene_.wireframe()); break;
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+        if (event.modifiers() & Qt::AltModifier) toggleFullScreen();
+        else toggleDetail();
+        break;
+    case Qt::Key_Space: camera_.setConstantHeight(!camera_.constantHeight()); break;
+    case Qt::Key_Tab:
+        takeOver();
+        camera_.setPose(scene_.home());
+        scene_.setPose(scene_.home());
+        break;
+    case Qt::Key_R: toggleRecord(); break;
+    case Qt::Key_P: togglePlay(); break;
+    case Qt::Key_Escape: SoQt::exitMainLoop(); break;
+    default: return false;
+    }
+    wake();
+    return true;
+}
+
+// The geometry is set too, for displays without a window manager that would do it.
+void FlyArea::toggleFullScreen()
+{
+    QWidget* shell = getWidget()->window();
+    const bool full = shell->windowState() & Qt::WindowFullScreen;
+    if (!full) windowed_ = shell->geometry();
+    shell->setWindowState(shell->windowState() ^ Qt::WindowFullScreen);
+    shell->setGeometry(full ? windowed_ : shell->screen()->geometry());
+}
+
+void FlyArea::scalePixelError(float factor)
+{
+    auto* field = scene_.terrain() ? dynamic_cast<SoSFFloat*>(scene_.terrain()->getField("pixelError")) : nullptr;
+    if (!field) return;
+    const float before = formerError_.value_or(field->getValue());
+    formerError_.reset();
+    field->setValue(std::clamp(std::max(before, 0.1f) * factor, 0.1f, 100.0f));
+}
+
+void FlyArea::toggleDetail()
+{
+    auto* field = scene_.terrain() ? dynamic_cast<SoSFFloat*>(scene_.terrain()->getField("pixelError")) : nullptr;
+    if (!field) return;
+    if (formerError_) {
+        field->setValue(*formerError_);
+        formerError_.reset();
+    } else {
+        formerError_ = field->getValue();
+        field->setValue(0.0f);
+    }
+}
+
+void FlyArea::toggleRecord()
+{
+    if (!recording_) {
+        recording_.emplace();
+        message_.clear();
+        return;
+    }
+    recorded_ = std::move(*recording_);
+    recording_.reset();
+    auto file = FlightWriter::open(recordFile);
+    bool written = bool(file);
+    if (written) {
+        for (const TimedPose& pose : recorded_) file.value().write(pose.timeMs, pose.pose);
+        written = file.value().close();
+    }
+    message_ = written ? std::string("recorded ") + recordFile : std::string("cannot write ") + recordFile;
+}
+
+void FlyArea::togglePlay()
+{
+    if (ends_) return;
+    if (play_) return takeOver();
+    auto flight = recorded_.empty() ? readFlightFile(recordFile) : terrain::Result<Flight>(keyFrameFlight(recorded_));
+    if (!flight) {
+        message_ = "nothing recorded";
+        return;
+    }
+    message_.clear();
+    const Flight path = std::move(flight).value();
+    play({path, FrameSchedule::make(path.duration(), options_.frameTime, std::nullopt, true)});
+}
+
+bool FlyArea::mouse(const QMouseEvent& event)
+{
+    if (!(event.buttons() & Qt::LeftButton)) {
+        drag_.reset();
+        return false;
+    }
+    const std::pair<int, int> here(event.x(), event.y());
+    if (drag_ && here != *drag_) {
+        takeOver();
+        if (!play_) {
+            camera_.look(float(drag_->first - here.first) * radiansPerPixel, float(drag_->second - here.second) * radiansPerPixel);
+            scene_.setPose(camera_.pose());
+        }
+    }
+    drag_ = here;
+    return true;
+}
+
+}  // namespace app
+
+#endif
