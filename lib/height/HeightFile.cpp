@@ -104,6 +104,7 @@ std::optional<Error> problemOf(const std::string& path, const HeightFileOptions&
 Result<HeightMap> readAny(const std::string& path, const HeightFileOptions& options)
 {
     if (isRaw(path)) return readRaw(path, options);
+    const QuietRasterLibrary quiet;
     if (isGeoreferenced(path)) return readRaster(path, options);
     const auto imageReason = whyNotAnImage(path);
     if (!imageReason) return readImage(path, options);

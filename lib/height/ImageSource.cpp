@@ -35,7 +35,10 @@ std::unique_ptr<OIIO::ImageInput> openInput(const std::string& path)
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     config.attribute("oiio:RawColor", 1);
-    return OIIO::ImageInput::open(path, &config);
+    auto input = OIIO::ImageInput::open(path, &config);
+    // All work in the calling thread, where the error output of libraries below can be held back.
+    if (input) input->threads(1);
+    return input;
 }
 
 template <class T>

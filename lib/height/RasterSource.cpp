@@ -131,6 +131,9 @@ bool isPaletteImage(const Placement& place, GDALRasterBand& band) { return !plac
 
 bool hasRasterReader() { return true; }
 
+QuietRasterLibrary::QuietRasterLibrary() { CPLPushErrorHandler(CPLQuietErrorHandler); }
+QuietRasterLibrary::~QuietRasterLibrary() { CPLPopErrorHandler(); }
+
 bool isGeoreferenced(const std::string& path)
 {
     const GdalMessages messages;
@@ -176,6 +179,9 @@ Result<HeightMap> readRaster(const std::string& path, const HeightFileOptions& o
 namespace terrain {
 
 bool hasRasterReader() { return false; }
+
+QuietRasterLibrary::QuietRasterLibrary() = default;
+QuietRasterLibrary::~QuietRasterLibrary() = default;
 
 bool isGeoreferenced(const std::string&) { return false; }
 

@@ -13,6 +13,16 @@ namespace terrain {
 /// Whether this build has GDAL. Without it the functions below only report that.
 bool hasRasterReader();
 
+/// As long as it lives, GDAL prints nothing from this thread. That goes for libtiff as well, which hands its errors to GDAL as soon as
+/// both are in one process, whoever called it.
+class QuietRasterLibrary {
+public:
+    QuietRasterLibrary();
+    ~QuietRasterLibrary();
+    QuietRasterLibrary(const QuietRasterLibrary&) = delete;
+    QuietRasterLibrary& operator=(const QuietRasterLibrary&) = delete;
+};
+
 /// Whether GDAL opens the file and finds its place on the earth (a geotransform).
 bool isGeoreferenced(const std::string& path);
 
