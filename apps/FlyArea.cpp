@@ -14,6 +14,7 @@
 #include <Inventor/fields/SoSFFloat.h>
 #include <Inventor/nodes/SoSeparator.h>
 
+#include "Clock.h"
 #include "FlyArea.h"
 
 namespace app {

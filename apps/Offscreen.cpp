@@ -12,6 +12,7 @@
 #include <Inventor/elements/SoGLCacheContextElement.h>
 #include <Inventor/sensors/SoSensorManager.h>
 
+#include "Clock.h"
 #include "FrameName.h"
 #include "ImageFile.h"
 #include "RunLog.h"

@@ -1,6 +1,5 @@
 #include "RunLog.h"
 
-#include <chrono>
 #include <cstdio>
 
 namespace app {
@@ -78,12 +77,6 @@ Result<Animation> Animation::make(const Options& options, const Scene& scene)
         if (options.animationTime) flight = flight->lasting(*options.animationTime);
     }
     return Animation{*flight, FrameSchedule::make(flight->duration(), options.frameTime, options.frames, options.synchronize)};
-}
-
-double nowMs()
-{
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return std::chrono::duration<double, std::milli>(now).count();
 }
 
 }  // namespace app

@@ -45,7 +45,4 @@ struct Animation {
     static terrain::Result<Animation> make(const Options& options, const Scene& scene);
 };
 
-/// Milliseconds of a steady clock.
-double nowMs();
-
 }  // namespace app

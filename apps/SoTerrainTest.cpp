@@ -7,9 +7,9 @@
 #include <Inventor/nodekits/SoNodeKit.h>
 #include <SoTerrain/SoTerrain.h>
 
+#include "Clock.h"
 #include "Offscreen.h"
 #include "Options.h"
-#include "RunLog.h"
 #include "Scene.h"
 #include "Window.h"
 

@@ -13,6 +13,7 @@
 #include <QSurfaceFormat>
 #include <QWidget>
 
+#include "Clock.h"
 #include "FlyArea.h"
 #include "RunLog.h"
 
