@@ -7,6 +7,7 @@
 #ifdef HAVE_OPENIMAGEIO
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -77,6 +78,20 @@ bool jpegEnds(const std::string& path)
     return end != std::string::npos && (scan == std::string::npos || end > scan);
 }
 
+/// Whether a PNG file goes on to its last chunk. Its decoder would report a missing end too, but on the error output and leaking memory.
+bool pngEnds(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(8);
+    for (std::array<unsigned char, 8> head; file.read(reinterpret_cast<char*>(head.data()), head.size());) {
+        if (std::equal(head.begin() + 4, head.end(), "IEND")) return true;
+        const std::int64_t length = std::int64_t(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
+        constexpr std::int64_t checksum = 4;
+        file.seekg(length + checksum, std::ios::cur);
+    }
+    return false;
+}
+
 /// Reads `count` rows of one channel, counted from the top, as `type`.
 bool readRows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel, OIIO::TypeDesc type, int firstRow, int count, void* rows)
 {
@@ -131,8 +146,9 @@ Result<HeightMap> readImage(const std::string& path, const HeightFileOptions& op
     if (spec.deep || spec.depth > 1) return Error{path, "a flat image", spec.deep ? "a deep image" : "a volume"};
     const auto channel = chooseChannel(path, spec.nchannels, options);
     if (!channel) return channel.error();
-    if (std::string_view(input->format_name()) == "jpeg" && !jpegEnds(path))
-        return Error{path, "a complete image", "JPEG data without an end"};
+    const std::string_view format = input->format_name();
+    if ((format == "jpeg" && !jpegEnds(path)) || (format == "png" && !pngEnds(path)))
+        return Error{path, "a complete image", "a file that ends too early"};
     return decode(path, *input, spec, channel.value(), options);
 }
 
