@@ -14,8 +14,7 @@ namespace terrain {
 
 namespace {
 
-std::optional<Error> problemOf(const HeightMap& map)
-{
+std::optional<Error> problemOf(const HeightMap& map) {
     const std::string size = std::to_string(map.columns) + " x " + std::to_string(map.rows);
     if (map.columns < 2 || map.rows < 2) return Error{"erosion", "at least 2 x 2 samples", size};
     if (map.heights.size() != std::size_t(map.columns) * std::size_t(map.rows))
@@ -31,8 +30,7 @@ struct Range {
     double most;
 };
 
-std::optional<Error> problemOf(std::initializer_list<Range> ranges)
-{
+std::optional<Error> problemOf(std::initializer_list<Range> ranges) {
     for (const Range& range : ranges)
         if (!(range.value >= range.least && range.value <= range.most))
             return Error{std::string("erosion: ") + range.name,
@@ -44,7 +42,6 @@ std::optional<Error> problemOf(std::initializer_list<Range> ranges)
 /// Offsets of the eight neighbours of a sample.
 constexpr std::array<std::array<int, 2>, 8> neighbours{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
 
-
 /// A small generator of its own (PCG-XSH-RR, O'Neill 2014), since those of the standard library differ in their distributions.
 class Random {
 public:
@@ -54,8 +51,7 @@ public:
     float unit() { return float(next() >> 8) * (1.0f / 16777216.0f); }
 
 private:
-    std::uint32_t next()
-    {
+    std::uint32_t next() {
         const std::uint64_t old = state_;
         state_ = old * 6364136223846793005ull + 1442695040888963407ull;
         const auto shifted = std::uint32_t(((old >> 18) ^ old) >> 27);
@@ -89,30 +85,28 @@ private:
     bool isMouth(int column, int row) const;
 
     const HeightMap& map_;
-    std::vector<float> flooded_;          ///< height of the water surface once every pit is full
+    std::vector<float> flooded_;         ///< height of the water surface once every pit is full
     std::vector<std::size_t> receiver_;  ///< itself at a mouth
     std::vector<std::size_t> order_;
 };
 
 template <class Visit>
-void Drainage::forNeighbours(std::size_t sample, Visit visit) const
-{
+void Drainage::forNeighbours(std::size_t sample, Visit visit) const {
     const int column = int(sample % std::size_t(map_.columns));
     const int row = int(sample / std::size_t(map_.columns));
     for (const auto& offset : neighbours) {
         const int c = column + offset[0];
         const int r = row + offset[1];
-        if (c >= 0 && c < map_.columns && r >= 0 && r < map_.rows) visit(std::size_t(r) * std::size_t(map_.columns) + std::size_t(c));
+        if (c >= 0 && c < map_.columns && r >= 0 && r < map_.rows)
+            visit(std::size_t(r) * std::size_t(map_.columns) + std::size_t(c));
     }
 }
 
-bool Drainage::isMouth(int column, int row) const
-{
+bool Drainage::isMouth(int column, int row) const {
     return column == 0 || row == 0 || column == map_.columns - 1 || row == map_.rows - 1;
 }
 
-void Drainage::flood()
-{
+void Drainage::flood() {
     Heap heap;
     for (int row = 0; row < map_.rows; ++row)
         for (int column = 0; column < map_.columns; ++column) {
@@ -137,10 +131,9 @@ void Drainage::flood()
 }
 
 /// Turns each sample to its steepest neighbour; the flood's own direction remains where the water stands level. Diagonals count as
-/// between 1 and 2 long, by chance, or else all valleys would run in eight directions (rho 8: Fairfield and Leymarie, "Drainage networks
-/// from grid digital elevation models", Water Resources Research 27, 1991).
-void Drainage::drain(Random& random)
-{
+/// between 1 and 2 long, by chance, or else all valleys would run in eight directions (rho 8: Fairfield and Leymarie, "Drainage
+/// networks from grid digital elevation models", Water Resources Research 27, 1991).
+void Drainage::drain(Random& random) {
     for (const std::size_t sample : order_) {
         if (receiver_[sample] == sample) continue;
         const double stretch = (2.0 - random.unit()) / std::sqrt(2.0);
@@ -149,7 +142,8 @@ void Drainage::drain(Random& random)
             if (receiver_[next] == none) return;
             const auto gap = next > sample ? next - sample : sample - next;
             const bool diagonal = gap != 1 && gap != std::size_t(map_.columns);
-            const double slope = (double(flooded_[sample]) - flooded_[next]) / (distance(sample, next) * (diagonal ? stretch : 1.0));
+            const double slope =
+                (double(flooded_[sample]) - flooded_[next]) / (distance(sample, next) * (diagonal ? stretch : 1.0));
             if (slope <= steepest) return;
             steepest = slope;
             receiver_[sample] = next;
@@ -157,24 +151,21 @@ void Drainage::drain(Random& random)
     }
 }
 
-double Drainage::distance(std::size_t from, std::size_t to) const
-{
+double Drainage::distance(std::size_t from, std::size_t to) const {
     const auto columns = std::int64_t(map_.columns);
     const double dx = double(std::int64_t(from) % columns - std::int64_t(to) % columns) * map_.spacing.x;
     const double dy = double(std::int64_t(from) / columns - std::int64_t(to) / columns) * map_.spacing.y;
     return std::sqrt(dx * dx + dy * dy);
 }
 
-std::vector<float> Drainage::drainedSamples() const
-{
+std::vector<float> Drainage::drainedSamples() const {
     std::vector<float> samples(map_.heights.size(), 1.0f);
     for (auto it = order_.rbegin(); it != order_.rend(); ++it)
         if (receiver_[*it] != *it) samples[receiver_[*it]] += samples[*it];
     return samples;
 }
 
-void stepRivers(HeightMap& map, const HeightMap& upliftMap, const RiverParameters& p, Random& random)
-{
+void stepRivers(HeightMap& map, const HeightMap& upliftMap, const RiverParameters& p, Random& random) {
     Drainage drainage(map);
     drainage.flood();
     drainage.drain(random);
@@ -191,10 +182,8 @@ void stepRivers(HeightMap& map, const HeightMap& upliftMap, const RiverParameter
     }
 }
 
-
 /// Soil creeps: dz/dt = D * (d2z/dx2 + d2z/dy2), in as many explicit parts as keep that stable. The border stays.
-void creep(HeightMap& map, double diffusion)
-{
+void creep(HeightMap& map, double diffusion) {
     const double weightX = diffusion / (map.spacing.x * map.spacing.x);
     const double weightY = diffusion / (map.spacing.y * map.spacing.y);
     const int parts = int(std::ceil((weightX + weightY) / 0.4));
@@ -215,8 +204,7 @@ void creep(HeightMap& map, double diffusion)
 }
 
 /// A border sample that stands above the one behind it would wall the land in.
-void lowerBorder(HeightMap& map)
-{
+void lowerBorder(HeightMap& map) {
     const auto lower = [&](int column, int row) {
         const float behind = map.at(std::clamp(column, 1, map.columns - 2), std::clamp(row, 1, map.rows - 2));
         float& height = map.heights[std::size_t(row) * std::size_t(map.columns) + std::size_t(column)];
@@ -230,9 +218,7 @@ void lowerBorder(HeightMap& map)
 class Rain {
 public:
     Rain(HeightMap& map, const DropletParameters& parameters)
-        : map_(map), p_(parameters), cell_(float(0.5 * (map.spacing.x + map.spacing.y)))
-    {
-    }
+        : map_(map), p_(parameters), cell_(float(0.5 * (map.spacing.x + map.spacing.y))) {}
     void fall(Random& random);
 
 private:
@@ -242,19 +228,20 @@ private:
         float slopeY;
     };
 
-    bool isInside(float x, float y) const { return x >= 0.0f && y >= 0.0f && x < float(map_.columns - 1) && y < float(map_.rows - 1); }
+    bool isInside(float x, float y) const {
+        return x >= 0.0f && y >= 0.0f && x < float(map_.columns - 1) && y < float(map_.rows - 1);
+    }
     float& at(int column, int row) { return map_.heights[std::size_t(row) * std::size_t(map_.columns) + std::size_t(column)]; }
     Surface surface(float x, float y);
     void change(float x, float y, float amount);
 
     HeightMap& map_;
     DropletParameters p_;
-    float cell_;  ///< distance of a step, in the unit of heights
+    float cell_;               ///< distance of a step, in the unit of heights
     std::vector<float> bell_;  ///< of the last change, kept for its memory
 };
 
-Rain::Surface Rain::surface(float x, float y)
-{
+Rain::Surface Rain::surface(float x, float y) {
     const int column = int(x);
     const int row = int(y);
     const float u = x - float(column);
@@ -265,8 +252,7 @@ Rain::Surface Rain::surface(float x, float y)
 }
 
 /// Adds `amount` around (x, y) under a round bell. It is centred between the samples, not on one, or lattices of mounds would grow.
-void Rain::change(float x, float y, float amount)
-{
+void Rain::change(float x, float y, float amount) {
     const float reach = float(p_.radius) + 1.0f;
     const int firstColumn = std::max(0, int(std::ceil(x - reach))), lastColumn = std::min(map_.columns - 1, int(x + reach));
     const int firstRow = std::max(0, int(std::ceil(y - reach))), lastRow = std::min(map_.rows - 1, int(y + reach));
@@ -285,8 +271,7 @@ void Rain::change(float x, float y, float amount)
         for (int column = firstColumn; column <= lastColumn; ++column) at(column, row) += amount * bell_[i++] / total;
 }
 
-void Rain::fall(Random& random)
-{
+void Rain::fall(Random& random) {
     float x = random.unit() * float(map_.columns - 1);
     float y = random.unit() * float(map_.rows - 1);
     float directionX = 0.0f, directionY = 0.0f, speed = 1.0f, water = 1.0f, sediment = 0.0f;
@@ -325,10 +310,8 @@ void Rain::fall(Random& random)
     if (isInside(x, y)) change(x, y, sediment);
 }
 
-
 /// Moves what is above the talus from each sample to its lower neighbours, in proportion to how far each is above it.
-void slide(const HeightMap& map, std::vector<float>& change, const ThermalParameters& p)
-{
+void slide(const HeightMap& map, std::vector<float>& change, const ThermalParameters& p) {
     const double diagonal = std::sqrt(map.spacing.x * map.spacing.x + map.spacing.y * map.spacing.y);
     for (int row = 0; row < map.rows; ++row)
         for (int column = 0; column < map.columns; ++column) {
@@ -353,15 +336,14 @@ void slide(const HeightMap& map, std::vector<float>& change, const ThermalParame
             change[sample] -= moved;
             for (std::size_t i = 0; i < neighbours.size(); ++i)
                 if (surplus[i] > 0.0f)
-                    change[std::size_t(std::ptrdiff_t(sample) + neighbours[i][1] * std::ptrdiff_t(map.columns) + neighbours[i][0])] +=
-                        moved * surplus[i] / sum;
+                    change[std::size_t(std::ptrdiff_t(sample) + neighbours[i][1] * std::ptrdiff_t(map.columns) +
+                                       neighbours[i][0])] += moved * surplus[i] / sum;
         }
 }
 
 }  // namespace
 
-Result<HeightMap> erodeByRivers(HeightMap map, const HeightMap& upliftMap, const RiverParameters& p)
-{
+Result<HeightMap> erodeByRivers(HeightMap map, const HeightMap& upliftMap, const RiverParameters& p) {
     if (const auto problem = problemOf(map)) return *problem;
     if (upliftMap.heights.size() != map.heights.size())
         return Error{"erosion: uplift", std::to_string(map.heights.size()) + " samples", std::to_string(upliftMap.heights.size())};
@@ -380,8 +362,7 @@ Result<HeightMap> erodeByRivers(HeightMap map, const HeightMap& upliftMap, const
     return map;
 }
 
-Result<HeightMap> erodeByDroplets(HeightMap map, const DropletParameters& p)
-{
+Result<HeightMap> erodeByDroplets(HeightMap map, const DropletParameters& p) {
     if (const auto problem = problemOf(map)) return *problem;
     if (const auto problem = problemOf({{"droplets", double(p.droplets), 0, 1e9},
                                         {"lifetime", double(p.lifetime), 1, 1e6},
@@ -398,11 +379,10 @@ Result<HeightMap> erodeByDroplets(HeightMap map, const DropletParameters& p)
     return map;
 }
 
-Result<HeightMap> erodeThermally(HeightMap map, const ThermalParameters& p)
-{
+Result<HeightMap> erodeThermally(HeightMap map, const ThermalParameters& p) {
     if (const auto problem = problemOf(map)) return *problem;
-    if (const auto problem = problemOf(
-            {{"iterations", double(p.iterations), 0, 1e6}, {"talus", p.talus, 0, 1e6}, {"rate", p.rate, 0, 1}}))
+    if (const auto problem =
+            problemOf({{"iterations", double(p.iterations), 0, 1e6}, {"talus", p.talus, 0, 1e6}, {"rate", p.rate, 0, 1}}))
         return *problem;
     std::vector<float> change(map.heights.size());
     for (int iteration = 0; iteration < p.iterations; ++iteration) {

@@ -16,8 +16,7 @@ constexpr std::int64_t firstDisplacement = std::int64_t(1) << 24;
 constexpr int largestSide = 32769;
 
 /// Well-mixed 32 bits of a grid point and the seed (finaliser of MurmurHash3, Appleby 2008).
-std::uint32_t mix(std::uint32_t value)
-{
+std::uint32_t mix(std::uint32_t value) {
     value ^= value >> 16;
     value *= 0x85ebca6bu;
     value ^= value >> 13;
@@ -25,8 +24,7 @@ std::uint32_t mix(std::uint32_t value)
     return value ^ (value >> 16);
 }
 
-std::uint32_t hashOf(std::uint32_t seed, int column, int row)
-{
+std::uint32_t hashOf(std::uint32_t seed, int column, int row) {
     return mix(mix(mix(seed + 0x9e3779b9u) ^ std::uint32_t(column)) + 0x7f4a7c15u * std::uint32_t(row));
 }
 
@@ -40,8 +38,7 @@ public:
     Fixed& at(int column, int row) { return heights_[std::size_t(row) * std::size_t(side_) + std::size_t(column)]; }
 
 private:
-    Fixed offset(int column, int row, std::int64_t displacement) const
-    {
+    Fixed offset(int column, int row, std::int64_t displacement) const {
         const std::int64_t random = std::int64_t(hashOf(seed_, column, row)) - (std::int64_t(1) << 31);
         return Fixed((random * displacement) >> 31);
     }
@@ -56,8 +53,7 @@ private:
     std::vector<Fixed> heights_;
 };
 
-void Square::displace(double roughness)
-{
+void Square::displace(double roughness) {
     const int last = side_ - 1;
     for (int row : {0, last})
         for (int column : {0, last}) at(column, row) = offset(column, row, firstDisplacement);
@@ -72,8 +68,7 @@ void Square::displace(double roughness)
     }
 }
 
-void Square::centres(int step, std::int64_t displacement)
-{
+void Square::centres(int step, std::int64_t displacement) {
     const int half = step / 2;
     for (int row = half; row < side_; row += step)
         for (int column = half; column < side_; column += step) {
@@ -83,15 +78,13 @@ void Square::centres(int step, std::int64_t displacement)
         }
 }
 
-void Square::edges(int step, std::int64_t displacement)
-{
+void Square::edges(int step, std::int64_t displacement) {
     const int half = step / 2;
     for (int row = 0; row < side_; row += half)
         for (int column = (row / half) % 2 ? 0 : half; column < side_; column += step) edge(column, row, half, displacement);
 }
 
-void Square::edge(int column, int row, int half, std::int64_t displacement)
-{
+void Square::edge(int column, int row, int half, std::int64_t displacement) {
     std::int64_t sum = 0;
     int count = 0;
     if (column >= half) sum += at(column - half, row), ++count;
@@ -102,8 +95,7 @@ void Square::edge(int column, int row, int half, std::int64_t displacement)
 }
 
 /// One run of h = h_neighbour * (1 - k) + h * k along a line of points, each taking in the one before it; k in 1/65536.
-void Square::pass(int first, int step, int count, std::int64_t coefficient)
-{
+void Square::pass(int first, int step, int count, std::int64_t coefficient) {
     std::ptrdiff_t index = first;
     for (int i = 1; i < count; ++i) {
         const std::int64_t neighbour = heights_[std::size_t(index)];
@@ -114,8 +106,7 @@ void Square::pass(int first, int step, int count, std::int64_t coefficient)
 }
 
 /// Ch. 4.3.3, over the part that is kept: along rows and columns, in both directions so that nothing is shifted.
-void Square::filter(std::int64_t coefficient, int columns, int rows)
-{
+void Square::filter(std::int64_t coefficient, int columns, int rows) {
     for (int row = 0; row < rows; ++row) {
         pass(row * side_, 1, columns, coefficient);
         pass(row * side_ + columns - 1, -1, columns, coefficient);
@@ -126,14 +117,14 @@ void Square::filter(std::int64_t coefficient, int columns, int rows)
     }
 }
 
-std::optional<Error> problemOf(const FractalParameters& p)
-{
+std::optional<Error> problemOf(const FractalParameters& p) {
     const auto error = [](const char* what, const char* expected, const std::string& found) {
         return Error{std::string("fractal terrain: ") + what, expected, found};
     };
     if (p.columns < 2 || p.rows < 2 || p.columns > largestSide || p.rows > largestSide)
         return error("size", "2 to 32769 columns and rows", std::to_string(p.columns) + " x " + std::to_string(p.rows));
-    if (!(p.roughness > 0.0 && p.roughness < 1.0)) return error("roughness", "a number between 0 and 1", std::to_string(p.roughness));
+    if (!(p.roughness > 0.0 && p.roughness < 1.0))
+        return error("roughness", "a number between 0 and 1", std::to_string(p.roughness));
     if (p.filterPasses < 0) return error("filter passes", "0 or more", std::to_string(p.filterPasses));
     if (!(p.filterCoefficient > 0.0 && p.filterCoefficient <= 1.0))
         return error("filter coefficient", "a number above 0, at most 1", std::to_string(p.filterCoefficient));
@@ -143,8 +134,7 @@ std::optional<Error> problemOf(const FractalParameters& p)
 }
 
 /// Stretches the kept part to [0, amplitude], through 24 bits that a float holds exactly.
-HeightMap normalised(Square& square, const FractalParameters& p)
-{
+HeightMap normalised(Square& square, const FractalParameters& p) {
     std::int64_t lowest = std::numeric_limits<Fixed>::max();
     std::int64_t highest = std::numeric_limits<Fixed>::min();
     for (int row = 0; row < p.rows; ++row)
@@ -167,8 +157,7 @@ HeightMap normalised(Square& square, const FractalParameters& p)
 
 }  // namespace
 
-Result<HeightMap> makeFractalMap(const FractalParameters& parameters)
-{
+Result<HeightMap> makeFractalMap(const FractalParameters& parameters) {
     if (const auto problem = problemOf(parameters)) return *problem;
     int side = 2;
     while (side < std::max(parameters.columns, parameters.rows)) side = 2 * side - 1;
@@ -183,8 +172,7 @@ Result<HeightMap> makeFractalMap(const FractalParameters& parameters)
     }
 }
 
-Result<std::shared_ptr<const HeightSource>> makeFractalSource(const FractalParameters& parameters)
-{
+Result<std::shared_ptr<const HeightSource>> makeFractalSource(const FractalParameters& parameters) {
     auto map = makeFractalMap(parameters);
     if (!map) return map.error();
     return makeMapSource(std::move(map).value());

@@ -14,8 +14,7 @@
 
 namespace terrain {
 
-Result<int> chooseChannel(const std::string& path, int channelCount, const HeightFileOptions& options)
-{
+Result<int> chooseChannel(const std::string& path, int channelCount, const HeightFileOptions& options) {
     const std::string count = std::to_string(channelCount) + (channelCount == 1 ? " channel" : " channels");
     if (options.channel < -1 || options.channel >= channelCount)
         return Error{path, "channel to be from 0 to " + std::to_string(channelCount - 1) + ", or -1 for the only one",
@@ -26,13 +25,13 @@ Result<int> chooseChannel(const std::string& path, int channelCount, const Heigh
 }
 
 Result<HeightMapBuilder> HeightMapBuilder::create(const std::string& path, std::int64_t columns, std::int64_t rows,
-                                                  const HeightFileOptions& options)
-{
+                                                  const HeightFileOptions& options) {
     const std::string size = std::to_string(columns) + " x " + std::to_string(rows);
     if (columns < 2 || rows < 2) return Error{path, "at least 2 x 2 samples", size};
     constexpr std::int64_t longest = std::numeric_limits<int>::max();
     if (columns > longest || rows > longest || std::uint64_t(columns) * std::uint64_t(rows) > maximumSamples)
-        return Error{path, "at most " + std::to_string(maximumSamples) + " samples, and " + std::to_string(longest) + " a side", size};
+        return Error{path, "at most " + std::to_string(maximumSamples) + " samples, and " + std::to_string(longest) + " a side",
+                     size};
     HeightMapBuilder builder;
     builder.map_.columns = int(columns);
     builder.map_.rows = int(rows);
@@ -43,23 +42,21 @@ Result<HeightMapBuilder> HeightMapBuilder::create(const std::string& path, std::
     return builder;
 }
 
-void HeightMapBuilder::setFileScale(double scale, double offset)
-{
+void HeightMapBuilder::setFileScale(double scale, double offset) {
     fileScale_ = scale;
     fileOffset_ = offset;
 }
 
-void HeightMapBuilder::setFileNoData(double value) { noData_.push_back(value); }
-
-bool HeightMapBuilder::isHole(double sample) const
-{
-    return std::any_of(noData_.begin(), noData_.end(), [&](double value) {
-        return sample == value || (floatingPoint_ && float(sample) == float(value));
-    });
+void HeightMapBuilder::setFileNoData(double value) {
+    noData_.push_back(value);
 }
 
-void HeightMapBuilder::appendRow(const double* samples)
-{
+bool HeightMapBuilder::isHole(double sample) const {
+    return std::any_of(noData_.begin(), noData_.end(),
+                       [&](double value) { return sample == value || (floatingPoint_ && float(sample) == float(value)); });
+}
+
+void HeightMapBuilder::appendRow(const double* samples) {
     constexpr float hole = std::numeric_limits<float>::quiet_NaN();
     for (int column = 0; column < map_.columns; ++column) {
         const double sample = samples[column];
@@ -69,8 +66,7 @@ void HeightMapBuilder::appendRow(const double* samples)
     }
 }
 
-HeightMap HeightMapBuilder::finish() &&
-{
+HeightMap HeightMapBuilder::finish() && {
     const std::size_t columns = std::size_t(map_.columns);
     for (std::size_t south = 0, north = std::size_t(map_.rows) - 1; south < north; ++south, --north)
         std::swap_ranges(map_.heights.begin() + std::ptrdiff_t(south * columns),
@@ -81,17 +77,16 @@ HeightMap HeightMapBuilder::finish() &&
 
 namespace {
 
-bool isRaw(const std::string& path)
-{
+bool isRaw(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
     return extension == ".raw";
 }
 
-std::optional<Error> problemOf(const std::string& path, const HeightFileOptions& options)
-{
+std::optional<Error> problemOf(const std::string& path, const HeightFileOptions& options) {
     const auto text = [](glm::dvec2 v) { return std::to_string(v.x) + " " + std::to_string(v.y); };
-    if (options.spacing && !(options.spacing->x > 0.0 && options.spacing->y > 0.0 && std::isfinite(options.spacing->x + options.spacing->y)))
+    if (options.spacing &&
+        !(options.spacing->x > 0.0 && options.spacing->y > 0.0 && std::isfinite(options.spacing->x + options.spacing->y)))
         return Error{path, "spacing above 0", text(*options.spacing)};
     if (options.origin && !std::isfinite(options.origin->x + options.origin->y))
         return Error{path, "an origin of two numbers", text(*options.origin)};
@@ -101,8 +96,7 @@ std::optional<Error> problemOf(const std::string& path, const HeightFileOptions&
     return std::nullopt;
 }
 
-Result<HeightMap> readAny(const std::string& path, const HeightFileOptions& options)
-{
+Result<HeightMap> readAny(const std::string& path, const HeightFileOptions& options) {
     if (isRaw(path)) return readRaw(path, options);
     const QuietRasterLibrary quiet;
     if (isGeoreferenced(path)) return readRaster(path, options);
@@ -113,8 +107,7 @@ Result<HeightMap> readAny(const std::string& path, const HeightFileOptions& opti
     return Error{path, "a .raw file, or one that OpenImageIO or GDAL reads", *imageReason + "; " + *rasterReason};
 }
 
-Result<std::shared_ptr<const HeightSource>> openChecked(const std::string& path, const HeightFileOptions& options)
-{
+Result<std::shared_ptr<const HeightSource>> openChecked(const std::string& path, const HeightFileOptions& options) {
     std::error_code failure;
     const auto status = std::filesystem::status(path, failure);
     if (status.type() == std::filesystem::file_type::not_found) return Error{path, "a height map", "no such file"};
@@ -129,8 +122,7 @@ Result<std::shared_ptr<const HeightSource>> openChecked(const std::string& path,
 
 }  // namespace
 
-Result<std::shared_ptr<const HeightSource>> openHeightFile(const std::string& path, const HeightFileOptions& options)
-{
+Result<std::shared_ptr<const HeightSource>> openHeightFile(const std::string& path, const HeightFileOptions& options) {
     try {
         return openChecked(path, options);
     } catch (const std::bad_alloc&) {

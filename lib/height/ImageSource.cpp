@@ -24,15 +24,13 @@ namespace terrain {
 namespace {
 
 /// OpenImageIO's reason in one line.
-std::string reason(std::string text)
-{
+std::string reason(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     while (!text.empty() && text.back() == ' ') text.pop_back();
     return text.empty() ? "unreadable data" : text;
 }
 
-std::unique_ptr<OIIO::ImageInput> openInput(const std::string& path)
-{
+std::unique_ptr<OIIO::ImageInput> openInput(const std::string& path) {
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     config.attribute("oiio:RawColor", 1);
@@ -43,34 +41,52 @@ std::unique_ptr<OIIO::ImageInput> openInput(const std::string& path)
 }
 
 template <class T>
-void widen(const void* from, std::vector<double>& to)
-{
+void widen(const void* from, std::vector<double>& to) {
     const T* samples = static_cast<const T*>(from);
     for (std::size_t i = 0; i < to.size(); ++i) to[i] = double(samples[i]);
 }
 
 /// Samples of `type` as doubles. False for a type that has no number.
-bool toDoubles(OIIO::TypeDesc type, const void* from, std::vector<double>& to)
-{
+bool toDoubles(OIIO::TypeDesc type, const void* from, std::vector<double>& to) {
     switch (type.basetype) {
-    case OIIO::TypeDesc::UINT8: widen<std::uint8_t>(from, to); return true;
-    case OIIO::TypeDesc::INT8: widen<std::int8_t>(from, to); return true;
-    case OIIO::TypeDesc::UINT16: widen<std::uint16_t>(from, to); return true;
-    case OIIO::TypeDesc::INT16: widen<std::int16_t>(from, to); return true;
-    case OIIO::TypeDesc::UINT32: widen<std::uint32_t>(from, to); return true;
-    case OIIO::TypeDesc::INT32: widen<std::int32_t>(from, to); return true;
-    case OIIO::TypeDesc::UINT64: widen<std::uint64_t>(from, to); return true;
-    case OIIO::TypeDesc::INT64: widen<std::int64_t>(from, to); return true;
-    case OIIO::TypeDesc::FLOAT: widen<float>(from, to); return true;
-    case OIIO::TypeDesc::DOUBLE: widen<double>(from, to); return true;
-    default: return false;
+    case OIIO::TypeDesc::UINT8:
+        widen<std::uint8_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::INT8:
+        widen<std::int8_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::UINT16:
+        widen<std::uint16_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::INT16:
+        widen<std::int16_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::UINT32:
+        widen<std::uint32_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::INT32:
+        widen<std::int32_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::UINT64:
+        widen<std::uint64_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::INT64:
+        widen<std::int64_t>(from, to);
+        return true;
+    case OIIO::TypeDesc::FLOAT:
+        widen<float>(from, to);
+        return true;
+    case OIIO::TypeDesc::DOUBLE:
+        widen<double>(from, to);
+        return true;
+    default:
+        return false;
     }
 }
 
 /// Whether the compressed data of a JPEG file end. Its decoder fills the rest of a truncated picture with grey and reports nothing.
 /// Compressed data hold no FF byte without a following 0, so the last end marker has to stand behind the last start of a scan.
-bool jpegEnds(const std::string& path)
-{
+bool jpegEnds(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     const std::size_t end = bytes.rfind("\xFF\xD9");
@@ -78,9 +94,9 @@ bool jpegEnds(const std::string& path)
     return end != std::string::npos && (scan == std::string::npos || end > scan);
 }
 
-/// Whether a PNG file goes on to its last chunk. Its decoder would report a missing end too, but on the error output and leaking memory.
-bool pngEnds(const std::string& path)
-{
+/// Whether a PNG file goes on to its last chunk. Its decoder would report a missing end too, but on the error output and leaking
+/// memory.
+bool pngEnds(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     file.seekg(8);
     for (std::array<unsigned char, 8> head; file.read(reinterpret_cast<char*>(head.data()), head.size());) {
@@ -93,8 +109,8 @@ bool pngEnds(const std::string& path)
 }
 
 /// Reads `count` rows of one channel, counted from the top, as `type`.
-bool readRows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel, OIIO::TypeDesc type, int firstRow, int count, void* rows)
-{
+bool readRows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel, OIIO::TypeDesc type, int firstRow, int count,
+              void* rows) {
     const int begin = spec.y + firstRow;
     if (spec.tile_width > 0)
         return input.read_tiles(0, 0, spec.x, spec.x + spec.width, begin, begin + count, 0, 1, channel, channel + 1, type, rows);
@@ -102,8 +118,7 @@ bool readRows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel,
 }
 
 Result<HeightMap> decode(const std::string& path, OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel,
-                         const HeightFileOptions& options)
-{
+                         const HeightFileOptions& options) {
     auto builder = HeightMapBuilder::create(path, spec.width, spec.height, options);
     if (!builder) return builder.error();
     // In the channel's own type nothing is converted, hence nothing is normalised; every half is a float.
@@ -130,16 +145,16 @@ Result<HeightMap> decode(const std::string& path, OIIO::ImageInput& input, const
 
 }  // namespace
 
-bool hasImageReader() { return true; }
+bool hasImageReader() {
+    return true;
+}
 
-std::optional<std::string> whyNotAnImage(const std::string& path)
-{
+std::optional<std::string> whyNotAnImage(const std::string& path) {
     if (openInput(path)) return std::nullopt;
     return reason(OIIO::geterror());
 }
 
-Result<HeightMap> readImage(const std::string& path, const HeightFileOptions& options)
-{
+Result<HeightMap> readImage(const std::string& path, const HeightFileOptions& options) {
     const auto input = openInput(path);
     if (!input) return Error{path, "an image that OpenImageIO reads", reason(OIIO::geterror())};
     const OIIO::ImageSpec spec = input->spec();
@@ -158,12 +173,15 @@ Result<HeightMap> readImage(const std::string& path, const HeightFileOptions& op
 
 namespace terrain {
 
-bool hasImageReader() { return false; }
+bool hasImageReader() {
+    return false;
+}
 
-std::optional<std::string> whyNotAnImage(const std::string&) { return "this build lacks OpenImageIO"; }
+std::optional<std::string> whyNotAnImage(const std::string&) {
+    return "this build lacks OpenImageIO";
+}
 
-Result<HeightMap> readImage(const std::string& path, const HeightFileOptions&)
-{
+Result<HeightMap> readImage(const std::string& path, const HeightFileOptions&) {
     return Error{path, "a build with OpenImageIO", "one that lacks it"};
 }
 

@@ -19,8 +19,9 @@ std::optional<std::string> whyNotAnImage(const std::string& path);
 /// Reads one channel of an image: `options.channel`, or the first one of a grey image with or without alpha.
 ///
 /// Samples keep their values: 255 of 8 bits is 255, 65535 of 16 bits is 65535, floats are as they are, alpha is not multiplied in.
-/// (Only depths that OpenImageIO widens itself, as 1, 2, 4 or 12 bits, span the next wider type.) Of several subimages the first counts.
-/// Error: unreadable or truncated file with OpenImageIO's reason; three or more channels and none chosen; volume or deep images.
+/// (Only depths that OpenImageIO widens itself, as 1, 2, 4 or 12 bits, span the next wider type.) Of several subimages the first
+/// counts. Error: unreadable or truncated file with OpenImageIO's reason; three or more channels and none chosen; volume or deep
+/// images.
 Result<HeightMap> readImage(const std::string& path, const HeightFileOptions& options);
 
 }  // namespace terrain

@@ -21,13 +21,11 @@ struct Span {
 };
 
 /// Whether tile `index` of `cells` strides begins before the last of `size` samples. Divides, since the product could overflow.
-bool beginsInside(int index, std::int64_t tileSpan, int size)
-{
+bool beginsInside(int index, std::int64_t tileSpan, int size) {
     return index >= 0 && index <= (std::int64_t(size) - 2) / tileSpan;
 }
 
-Span spanOf(int index, std::int64_t tileSpan, std::int64_t stride, int size)
-{
+Span spanOf(int index, std::int64_t tileSpan, std::int64_t stride, int size) {
     const std::int64_t first = index * tileSpan;
     return {first, std::min(first + tileSpan, std::int64_t(size) - 1), stride};
 }
@@ -38,8 +36,7 @@ public:
 
     HeightExtent extent() const override { return {map_.columns, map_.rows, map_.origin, map_.spacing}; }
 
-    int levelCount() const override
-    {
+    int levelCount() const override {
         const std::int64_t cells = std::int64_t(std::max(map_.columns, map_.rows)) - 1;
         int levels = 1;
         while ((std::int64_t(1) << (levels - 1)) < cells) ++levels;
@@ -49,8 +46,7 @@ public:
     Result<HeightTile> load(const TileKey& key) const override;
     const HeightMap* map() const override { return &map_; }
 
-    std::size_t bytes() const override
-    {
+    std::size_t bytes() const override {
         return sizeof *this + map_.heights.capacity() * sizeof(float) + map_.projection.capacity();
     }
 
@@ -60,12 +56,11 @@ private:
     HeightMap map_;
 };
 
-Result<HeightTile> MapSource::load(const TileKey& key) const
-{
+Result<HeightTile> MapSource::load(const TileKey& key) const {
     const auto outside = [&](const std::string& expected) {
         return Error{"tile", expected,
-                     "level " + std::to_string(key.level) + ", column " + std::to_string(key.column) + ", row " + std::to_string(key.row) +
-                         ", cells " + std::to_string(key.cells)};
+                     "level " + std::to_string(key.level) + ", column " + std::to_string(key.column) + ", row " +
+                         std::to_string(key.row) + ", cells " + std::to_string(key.cells)};
     };
     if (key.level < 0 || key.level >= levelCount()) return outside("a level from 0 to " + std::to_string(levelCount() - 1));
     if (key.cells < 1) return outside("at least 1 cell");
@@ -88,8 +83,7 @@ Result<HeightTile> MapSource::load(const TileKey& key) const
     return tile;
 }
 
-void MapSource::measure(HeightTile& tile, const Span& columns, const Span& rows) const
-{
+void MapSource::measure(HeightTile& tile, const Span& columns, const Span& rows) const {
     // Comparisons with NaN are false, so holes drop out by themselves.
     float minimum = std::numeric_limits<float>::infinity();
     float maximum = -minimum;
@@ -106,8 +100,7 @@ void MapSource::measure(HeightTile& tile, const Span& columns, const Span& rows)
 
 }  // namespace
 
-Result<std::shared_ptr<const HeightSource>> makeMapSource(HeightMap map)
-{
+Result<std::shared_ptr<const HeightSource>> makeMapSource(HeightMap map) {
     const std::string size = std::to_string(map.columns) + " x " + std::to_string(map.rows);
     if (map.columns < 2 || map.rows < 2) return Error{"height map", "at least 2 x 2 samples", size};
     if (map.heights.size() != std::uint64_t(map.columns) * std::uint64_t(map.rows))

@@ -32,8 +32,7 @@ public:
     std::string reason() const { return text_.empty() ? "unreadable data" : text_; }
 
 private:
-    static void CPL_STDCALL receive(CPLErr level, CPLErrorNum, const char* message)
-    {
+    static void CPL_STDCALL receive(CPLErr level, CPLErrorNum, const char* message) {
         auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
         if (level < CE_Failure || !self->text_.empty()) return;
         self->text_ = message;
@@ -48,8 +47,7 @@ struct CloseDataset {
 };
 using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
-Dataset openDataset(const std::string& path)
-{
+Dataset openDataset(const std::string& path) {
     static std::once_flag registered;
     std::call_once(registered, GDALAllRegister);
     return Dataset(static_cast<GDALDataset*>(
@@ -63,29 +61,30 @@ struct Placement {
     double y0 = 0.0, dy = -1.0;
 };
 
-Result<Placement> placementOf(const std::string& path, GDALDataset& dataset)
-{
+Result<Placement> placementOf(const std::string& path, GDALDataset& dataset) {
     std::array<double, 6> transform{};
     if (dataset.GetGeoTransform(transform.data()) != CE_None) return Placement{};
     if (transform[2] != 0.0 || transform[4] != 0.0) return Error{path, "a raster whose rows run east", "a rotated geotransform"};
     const double dx = transform[1];
     const double dy = transform[5];
-    if (!std::isfinite(dx) || !std::isfinite(dy) || dx == 0.0 || dy == 0.0 || !std::isfinite(transform[0]) || !std::isfinite(transform[3]))
+    if (!std::isfinite(dx) || !std::isfinite(dy) || dx == 0.0 || dy == 0.0 || !std::isfinite(transform[0]) ||
+        !std::isfinite(transform[3]))
         return Error{path, "pixels with a size", std::to_string(dx) + " x " + std::to_string(dy)};
     return Placement{true, transform[0] + 0.5 * dx, dx, transform[3] + 0.5 * dy, dy};
 }
 
-double noDataOf(GDALRasterBand& band, int& found)
-{
+double noDataOf(GDALRasterBand& band, int& found) {
     switch (band.GetRasterDataType()) {
-    case GDT_Int64: return double(band.GetNoDataValueAsInt64(&found));
-    case GDT_UInt64: return double(band.GetNoDataValueAsUInt64(&found));
-    default: return band.GetNoDataValue(&found);
+    case GDT_Int64:
+        return double(band.GetNoDataValueAsInt64(&found));
+    case GDT_UInt64:
+        return double(band.GetNoDataValueAsUInt64(&found));
+    default:
+        return band.GetNoDataValue(&found);
     }
 }
 
-void describeSamples(GDALRasterBand& band, HeightMapBuilder& builder)
-{
+void describeSamples(GDALRasterBand& band, HeightMapBuilder& builder) {
     const GDALDataType type = band.GetRasterDataType();
     builder.setFloatingPoint(type == GDT_Float32 || type == GDT_Float64);
     int found = 0;
@@ -99,22 +98,21 @@ void describeSamples(GDALRasterBand& band, HeightMapBuilder& builder)
 }
 
 /// Rows go to the builder from north to south and from west to east, whichever way the file has them.
-bool readBand(GDALRasterBand& band, const Placement& place, HeightMapBuilder& builder)
-{
+bool readBand(GDALRasterBand& band, const Placement& place, HeightMapBuilder& builder) {
     const int columns = band.GetXSize();
     const int rows = band.GetYSize();
     std::vector<double> samples(static_cast<std::size_t>(columns));
     for (int i = 0; i < rows; ++i) {
         const int row = place.dy < 0.0 ? i : rows - 1 - i;
-        if (band.RasterIO(GF_Read, 0, row, columns, 1, samples.data(), columns, 1, GDT_Float64, 0, 0, nullptr) != CE_None) return false;
+        if (band.RasterIO(GF_Read, 0, row, columns, 1, samples.data(), columns, 1, GDT_Float64, 0, 0, nullptr) != CE_None)
+            return false;
         if (place.dx < 0.0) std::reverse(samples.begin(), samples.end());
         builder.appendRow(samples.data());
     }
     return true;
 }
 
-void georeference(HeightMap& map, const Placement& place, GDALDataset& dataset)
-{
+void georeference(HeightMap& map, const Placement& place, GDALDataset& dataset) {
     if (place.known) {
         map.spacing = {std::abs(place.dx), std::abs(place.dy)};
         map.origin = {place.dx > 0.0 ? place.x0 : place.x0 + (map.columns - 1) * place.dx,
@@ -125,32 +123,37 @@ void georeference(HeightMap& map, const Placement& place, GDALDataset& dataset)
 }
 
 /// An image with a palette has its colours in the table and only indices in the band; a georeferenced raster has values in it.
-bool isPaletteImage(const Placement& place, GDALRasterBand& band) { return !place.known && band.GetColorTable(); }
+bool isPaletteImage(const Placement& place, GDALRasterBand& band) {
+    return !place.known && band.GetColorTable();
+}
 
 }  // namespace
 
-bool hasRasterReader() { return true; }
+bool hasRasterReader() {
+    return true;
+}
 
-QuietRasterLibrary::QuietRasterLibrary() { CPLPushErrorHandler(CPLQuietErrorHandler); }
-QuietRasterLibrary::~QuietRasterLibrary() { CPLPopErrorHandler(); }
+QuietRasterLibrary::QuietRasterLibrary() {
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+}
+QuietRasterLibrary::~QuietRasterLibrary() {
+    CPLPopErrorHandler();
+}
 
-bool isGeoreferenced(const std::string& path)
-{
+bool isGeoreferenced(const std::string& path) {
     const GdalMessages messages;
     const Dataset dataset = openDataset(path);
     std::array<double, 6> transform{};
     return dataset && dataset->GetRasterCount() > 0 && dataset->GetGeoTransform(transform.data()) == CE_None;
 }
 
-std::optional<std::string> whyNotARaster(const std::string& path)
-{
+std::optional<std::string> whyNotARaster(const std::string& path) {
     const GdalMessages messages;
     if (openDataset(path)) return std::nullopt;
     return messages.reason();
 }
 
-Result<HeightMap> readRaster(const std::string& path, const HeightFileOptions& options)
-{
+Result<HeightMap> readRaster(const std::string& path, const HeightFileOptions& options) {
     const GdalMessages messages;
     const Dataset dataset = openDataset(path);
     if (!dataset) return Error{path, "a raster that GDAL reads", messages.reason()};
@@ -178,17 +181,22 @@ Result<HeightMap> readRaster(const std::string& path, const HeightFileOptions& o
 
 namespace terrain {
 
-bool hasRasterReader() { return false; }
+bool hasRasterReader() {
+    return false;
+}
 
 QuietRasterLibrary::QuietRasterLibrary() = default;
 QuietRasterLibrary::~QuietRasterLibrary() = default;
 
-bool isGeoreferenced(const std::string&) { return false; }
+bool isGeoreferenced(const std::string&) {
+    return false;
+}
 
-std::optional<std::string> whyNotARaster(const std::string&) { return "this build lacks GDAL"; }
+std::optional<std::string> whyNotARaster(const std::string&) {
+    return "this build lacks GDAL";
+}
 
-Result<HeightMap> readRaster(const std::string& path, const HeightFileOptions&)
-{
+Result<HeightMap> readRaster(const std::string& path, const HeightFileOptions&) {
     return Error{path, "a build with GDAL", "one that lacks it"};
 }
 

@@ -12,13 +12,16 @@ namespace terrain {
 
 namespace {
 
-std::uint64_t bytesPerSample(RawType type) { return type == RawType::UInt8 ? 1 : 2; }
+std::uint64_t bytesPerSample(RawType type) {
+    return type == RawType::UInt8 ? 1 : 2;
+}
 
-const char* nameOf(RawType type) { return type == RawType::UInt8 ? "8 bits" : "16 bits"; }
+const char* nameOf(RawType type) {
+    return type == RawType::UInt8 ? "8 bits" : "16 bits";
+}
 
 /// Largest whole number whose square is at most `value`.
-std::uint64_t wholeRoot(std::uint64_t value)
-{
+std::uint64_t wholeRoot(std::uint64_t value) {
     auto root = std::uint64_t(std::sqrt(double(value)));
     while (root > value / (root ? root : 1)) --root;
     while ((root + 1) <= value / (root + 1)) ++root;
@@ -30,8 +33,7 @@ struct RawSize {
     std::int64_t rows;
 };
 
-Result<RawSize> sizeOf(const std::string& path, std::uint64_t length, const HeightFileOptions& options)
-{
+Result<RawSize> sizeOf(const std::string& path, std::uint64_t length, const HeightFileOptions& options) {
     const std::uint64_t width = bytesPerSample(options.rawType);
     const glm::ivec2 size = options.rawSize;
     if (size == glm::ivec2(0, 0)) {
@@ -50,8 +52,7 @@ Result<RawSize> sizeOf(const std::string& path, std::uint64_t length, const Heig
     return RawSize{size.x, size.y};
 }
 
-void decodeRow(const std::vector<unsigned char>& bytes, RawType type, std::vector<double>& samples)
-{
+void decodeRow(const std::vector<unsigned char>& bytes, RawType type, std::vector<double>& samples) {
     if (type == RawType::UInt8) {
         for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = bytes[i];
         return;
@@ -62,8 +63,7 @@ void decodeRow(const std::vector<unsigned char>& bytes, RawType type, std::vecto
 
 }  // namespace
 
-Result<HeightMap> readRaw(const std::string& path, const HeightFileOptions& options)
-{
+Result<HeightMap> readRaw(const std::string& path, const HeightFileOptions& options) {
     std::error_code failure;
     const std::uint64_t length = std::filesystem::file_size(path, failure);
     if (failure) return Error{path, "a readable file", failure.message()};

@@ -12,8 +12,7 @@ using namespace terrain;
 
 namespace {
 
-HeightMap fractal(double amplitude = 60.0)
-{
+HeightMap fractal(double amplitude = 60.0) {
     FractalParameters parameters;
     parameters.columns = parameters.rows = 129;
     parameters.amplitude = amplitude;
@@ -21,8 +20,7 @@ HeightMap fractal(double amplitude = 60.0)
     return makeFractalMap(parameters).value();
 }
 
-HeightMap flat(int columns, int rows, float height)
-{
+HeightMap flat(int columns, int rows, float height) {
     HeightMap map;
     map.columns = columns;
     map.rows = rows;
@@ -30,10 +28,11 @@ HeightMap flat(int columns, int rows, float height)
     return map;
 }
 
-double volume(const HeightMap& map) { return std::accumulate(map.heights.begin(), map.heights.end(), 0.0); }
+double volume(const HeightMap& map) {
+    return std::accumulate(map.heights.begin(), map.heights.end(), 0.0);
+}
 
-double steepest(const HeightMap& map)
-{
+double steepest(const HeightMap& map) {
     double result = 0.0;
     for (int row = 0; row < map.rows; ++row)
         for (int column = 1; column < map.columns; ++column)
@@ -42,8 +41,7 @@ double steepest(const HeightMap& map)
 }
 
 /// Inner samples without a lower neighbour: where water would stand.
-int pits(const HeightMap& map)
-{
+int pits(const HeightMap& map) {
     int count = 0;
     for (int row = 1; row < map.rows - 1; ++row)
         for (int column = 1; column < map.columns - 1; ++column) {
@@ -55,15 +53,13 @@ int pits(const HeightMap& map)
     return count;
 }
 
-bool allFinite(const HeightMap& map)
-{
+bool allFinite(const HeightMap& map) {
     return std::all_of(map.heights.begin(), map.heights.end(), [](float height) { return std::isfinite(height); });
 }
 
 }  // namespace
 
-TEST(Erosion, RiversLeadAlmostAllWaterToTheBorder)
-{
+TEST(Erosion, RiversLeadAlmostAllWaterToTheBorder) {
     HeightMap map = fractal();
     const int before = pits(map);
     RiverParameters parameters;
@@ -74,8 +70,7 @@ TEST(Erosion, RiversLeadAlmostAllWaterToTheBorder)
     EXPECT_LT(pits(eroded.value()), before / 10);
 }
 
-TEST(Erosion, RiversBalanceUpliftInALongValley)
-{
+TEST(Erosion, RiversBalanceUpliftInALongValley) {
     // A strip one sample wide between two borders, steep banks aside, comes to rest: the slope law is U = K sqrt(A) S.
     RiverParameters parameters;
     parameters.steps = 3000;
@@ -94,8 +89,7 @@ TEST(Erosion, RiversBalanceUpliftInALongValley)
     }
 }
 
-TEST(Erosion, TheBorderDoesNotRise)
-{
+TEST(Erosion, TheBorderDoesNotRise) {
     const HeightMap map = fractal();
     const auto eroded = erodeByRivers(map, flat(129, 129, 1.0f), {});
     ASSERT_TRUE(eroded);
@@ -105,8 +99,7 @@ TEST(Erosion, TheBorderDoesNotRise)
     }
 }
 
-TEST(Erosion, DropletsCarryMaterialDownhillAndLoseNoneInABasin)
-{
+TEST(Erosion, DropletsCarryMaterialDownhillAndLoseNoneInABasin) {
     HeightMap basin = flat(129, 129, 0.0f);
     const auto distance = [](std::size_t i) { return std::hypot(double(i % 129) - 64.0, double(i / 129) - 64.0); };
     for (std::size_t i = 0; i < basin.heights.size(); ++i) basin.heights[i] = float(0.01 * distance(i) * distance(i));
@@ -124,8 +117,7 @@ TEST(Erosion, DropletsCarryMaterialDownhillAndLoseNoneInABasin)
     EXPECT_NEAR(volume(eroded.value()), volume(basin), 0.01 * bottom);
 }
 
-TEST(Erosion, DropletsAreTheSameForTheSameSeed)
-{
+TEST(Erosion, DropletsAreTheSameForTheSameSeed) {
     DropletParameters parameters;
     parameters.droplets = 500;
     const auto first = erodeByDroplets(fractal(), parameters);
@@ -134,8 +126,7 @@ TEST(Erosion, DropletsAreTheSameForTheSameSeed)
     EXPECT_NE(first.value().heights, erodeByDroplets(fractal(), parameters).value().heights);
 }
 
-TEST(Erosion, SlidingBringsSlopesDownToTheTalusAndKeepsTheVolume)
-{
+TEST(Erosion, SlidingBringsSlopesDownToTheTalusAndKeepsTheVolume) {
     HeightMap map = flat(65, 65, 0.0f);
     map.heights[32 * 65 + 32] = 100.0f;
     ThermalParameters parameters;
@@ -147,15 +138,13 @@ TEST(Erosion, SlidingBringsSlopesDownToTheTalusAndKeepsTheVolume)
     EXPECT_LT(steepest(slid.value()), 0.85);
 }
 
-TEST(Erosion, GentleSlopesDoNotSlide)
-{
+TEST(Erosion, GentleSlopesDoNotSlide) {
     HeightMap map = flat(20, 20, 0.0f);
     for (std::size_t i = 0; i < map.heights.size(); ++i) map.heights[i] = 0.5f * float(i % 20);
     EXPECT_EQ(erodeThermally(map, {}).value().heights, map.heights);
 }
 
-TEST(Erosion, HolesStayAndDoNotSpread)
-{
+TEST(Erosion, HolesStayAndDoNotSpread) {
     HeightMap map = fractal();
     constexpr float hole = std::numeric_limits<float>::quiet_NaN();
     for (int i : {0, 64 * 129 + 64, 64 * 129 + 65, 30 * 129 + 5}) map.heights[std::size_t(i)] = hole;
@@ -169,8 +158,7 @@ TEST(Erosion, HolesStayAndDoNotSpread)
     EXPECT_EQ(holes(erodeThermally(map, {})), 4);
 }
 
-TEST(Erosion, SmallestMapsAreFine)
-{
+TEST(Erosion, SmallestMapsAreFine) {
     for (const auto& [columns, rows] : {std::pair{2, 2}, {2, 9}, {3, 3}}) {
         const HeightMap map = flat(columns, rows, 1.0f);
         EXPECT_TRUE(erodeByRivers(map, map, {}));
@@ -179,8 +167,7 @@ TEST(Erosion, SmallestMapsAreFine)
     }
 }
 
-TEST(Erosion, BadParametersAndSizesAreErrors)
-{
+TEST(Erosion, BadParametersAndSizesAreErrors) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const HeightMap map = flat(4, 4, 1.0f);
     EXPECT_FALSE(erodeByRivers(map, flat(4, 5, 1.0f), {}));

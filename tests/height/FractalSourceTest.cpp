@@ -12,15 +12,13 @@ using namespace terrain;
 
 namespace {
 
-HeightMap make(const FractalParameters& parameters)
-{
+HeightMap make(const FractalParameters& parameters) {
     auto map = makeFractalMap(parameters);
     EXPECT_TRUE(map) << map.error().message();
     return map ? std::move(map).value() : HeightMap{};
 }
 
-FractalParameters sized(int columns, int rows)
-{
+FractalParameters sized(int columns, int rows) {
     FractalParameters parameters;
     parameters.columns = columns;
     parameters.rows = rows;
@@ -28,8 +26,7 @@ FractalParameters sized(int columns, int rows)
 }
 
 /// FNV-1a over the bits of the heights, lowest byte first.
-std::uint64_t checksum(const HeightMap& map)
-{
+std::uint64_t checksum(const HeightMap& map) {
     std::uint64_t hash = 14695981039346656037ull;
     for (const float height : map.heights) {
         std::uint32_t bits = 0;
@@ -40,8 +37,7 @@ std::uint64_t checksum(const HeightMap& map)
 }
 
 /// Mean difference between neighbours.
-double ruggedness(const HeightMap& map)
-{
+double ruggedness(const HeightMap& map) {
     double sum = 0.0;
     for (int row = 0; row < map.rows; ++row)
         for (int column = 1; column < map.columns; ++column) sum += std::abs(map.at(column, row) - map.at(column - 1, row));
@@ -50,8 +46,7 @@ double ruggedness(const HeightMap& map)
 
 }  // namespace
 
-TEST(FractalSource, SameParametersGiveSameHeightsBitForBit)
-{
+TEST(FractalSource, SameParametersGiveSameHeightsBitForBit) {
     FractalParameters parameters = sized(257, 200);
     parameters.seed = 42;
     parameters.filterPasses = 2;
@@ -59,8 +54,7 @@ TEST(FractalSource, SameParametersGiveSameHeightsBitForBit)
     EXPECT_EQ(make(parameters).heights, make(parameters).heights);
 }
 
-TEST(FractalSource, SameHeightsOnEveryMachine)
-{
+TEST(FractalSource, SameHeightsOnEveryMachine) {
     FractalParameters parameters = sized(129, 129);
     parameters.seed = 7;
     parameters.roughness = 0.55;
@@ -70,8 +64,7 @@ TEST(FractalSource, SameHeightsOnEveryMachine)
     EXPECT_EQ(checksum(make(parameters)), 11120428701160331095ull);
 }
 
-TEST(FractalSource, HeightsSpanZeroToAmplitude)
-{
+TEST(FractalSource, HeightsSpanZeroToAmplitude) {
     for (const auto& [columns, rows] : {std::pair{2, 2}, {3, 3}, {100, 7}, {257, 257}, {2, 300}}) {
         FractalParameters parameters = sized(columns, rows);
         parameters.amplitude = 250.0;
@@ -83,8 +76,7 @@ TEST(FractalSource, HeightsSpanZeroToAmplitude)
     }
 }
 
-TEST(FractalSource, AnotherSeedGivesAnotherTerrain)
-{
+TEST(FractalSource, AnotherSeedGivesAnotherTerrain) {
     FractalParameters parameters = sized(65, 65);
     const HeightMap first = make(parameters);
     parameters.seed = 2;
@@ -94,8 +86,7 @@ TEST(FractalSource, AnotherSeedGivesAnotherTerrain)
     EXPECT_LT(equal, first.heights.size() / 100);
 }
 
-TEST(FractalSource, RoughnessMakesRougher)
-{
+TEST(FractalSource, RoughnessMakesRougher) {
     FractalParameters parameters = sized(257, 257);
     double previous = 0.0;
     for (double roughness : {0.3, 0.5, 0.7, 0.9}) {
@@ -106,8 +97,7 @@ TEST(FractalSource, RoughnessMakesRougher)
     }
 }
 
-TEST(FractalSource, FilteringSmoothsTheMoreTheSmallerItsCoefficientAndTheMorePasses)
-{
+TEST(FractalSource, FilteringSmoothsTheMoreTheSmallerItsCoefficientAndTheMorePasses) {
     FractalParameters parameters = sized(257, 257);
     parameters.roughness = 0.7;
     const double none = ruggedness(make(parameters));
@@ -125,8 +115,7 @@ TEST(FractalSource, FilteringSmoothsTheMoreTheSmallerItsCoefficientAndTheMorePas
     EXPECT_EQ(ruggedness(make(parameters)), none);
 }
 
-TEST(FractalSource, FilterFollowsItsEquation)
-{
+TEST(FractalSource, FilterFollowsItsEquation) {
     FractalParameters parameters = sized(17, 17);
     parameters.seed = 3;
     HeightMap expected = make(parameters);
@@ -151,15 +140,13 @@ TEST(FractalSource, FilterFollowsItsEquation)
         EXPECT_NEAR(filtered.heights[i], (expected.heights[i] - lowest) / range, 1e-5);
 }
 
-TEST(FractalSource, ASourceHoldsTheMap)
-{
+TEST(FractalSource, ASourceHoldsTheMap) {
     const auto source = makeFractalSource(sized(33, 20));
     ASSERT_TRUE(source);
     EXPECT_EQ(source.value()->map()->heights, make(sized(33, 20)).heights);
 }
 
-TEST(FractalSource, BadParametersAreErrorsThatNameThem)
-{
+TEST(FractalSource, BadParametersAreErrorsThatNameThem) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto problem = [](auto change) {
         FractalParameters parameters = sized(9, 9);

@@ -29,21 +29,18 @@ namespace {
 
 class ImageSource : public testing::Test {
 protected:
-    ImageSource() : folder_(std::filesystem::temp_directory_path() / ("soterrain-image-" + std::to_string(getpid())))
-    {
+    ImageSource() : folder_(std::filesystem::temp_directory_path() / ("soterrain-image-" + std::to_string(getpid()))) {
         std::filesystem::create_directories(folder_);
     }
     ~ImageSource() override { std::filesystem::remove_all(folder_); }
 
-    void SetUp() override
-    {
+    void SetUp() override {
         if (!hasImageReader()) GTEST_SKIP() << "built without OpenImageIO";
     }
 
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-    static std::string problemOf(const std::string& path, const HeightFileOptions& options = {})
-    {
+    static std::string problemOf(const std::string& path, const HeightFileOptions& options = {}) {
         const auto source = openHeightFile(path, options);
         return source ? "no error" : source.error().message();
     }
@@ -53,13 +50,11 @@ protected:
 
 }  // namespace
 
-TEST_F(ImageSource, AMissingFileIsReportedAsSuch)
-{
+TEST_F(ImageSource, AMissingFileIsReportedAsSuch) {
     EXPECT_NE(problemOf(path("absent.png")).find("no such file"), std::string::npos);
 }
 
-TEST_F(ImageSource, AFileOfNonsenseIsAnErrorWithAReason)
-{
+TEST_F(ImageSource, AFileOfNonsenseIsAnErrorWithAReason) {
     for (const char* name : {"nonsense.png", "nonsense.tif", "nonsense", "nonsense.jpg", "empty.exr"}) {
         std::ofstream(path(name)) << (std::string(name) == "empty.exr" ? "" : "these are no heights at all");
         const std::string problem = problemOf(path(name));
@@ -76,8 +71,8 @@ using OIIO::TypeDesc;
 
 /// An image of T written as it is.
 template <class T>
-void writeImage(const std::string& path, int width, int height, int channels, TypeDesc type, const std::vector<T>& pixels, int tile = 0)
-{
+void writeImage(const std::string& path, int width, int height, int channels, TypeDesc type, const std::vector<T>& pixels,
+                int tile = 0) {
     const QuietRasterLibrary quiet;
     const auto output = OIIO::ImageOutput::create(path);
     ASSERT_TRUE(output) << OIIO::geterror();
@@ -89,8 +84,7 @@ void writeImage(const std::string& path, int width, int height, int channels, Ty
     ASSERT_TRUE(output->close()) << output->geterror();
 }
 
-HeightMap read(const std::string& path, const HeightFileOptions& options = {})
-{
+HeightMap read(const std::string& path, const HeightFileOptions& options = {}) {
     const auto source = openHeightFile(path, options);
     EXPECT_TRUE(source) << source.error().message();
     return source ? *source.value()->map() : HeightMap{};
@@ -98,23 +92,20 @@ HeightMap read(const std::string& path, const HeightFileOptions& options = {})
 
 /// Noise that does not compress, so that half of a file is half of an image.
 template <class T>
-std::vector<T> noise(std::size_t count)
-{
+std::vector<T> noise(std::size_t count) {
     std::vector<T> values(count);
     std::uint32_t state = 1;
     for (T& value : values) value = T((state = state * 1664525u + 1013904223u) >> 16);
     return values;
 }
 
-void truncate(const std::string& path, double part)
-{
+void truncate(const std::string& path, double part) {
     std::filesystem::resize_file(path, std::uintmax_t(double(std::filesystem::file_size(path)) * part));
 }
 
 }  // namespace
 
-TEST_F(ImageSource, TheTopRowIsTheNorthernmost)
-{
+TEST_F(ImageSource, TheTopRowIsTheNorthernmost) {
     writeImage<std::uint8_t>(path("a.png"), 3, 2, 1, TypeDesc::UINT8, {1, 2, 3, 4, 5, 6});
     const HeightMap map = read(path("a.png"));
     EXPECT_EQ(map.columns, 3);
@@ -124,8 +115,7 @@ TEST_F(ImageSource, TheTopRowIsTheNorthernmost)
     EXPECT_EQ(map.origin, glm::dvec2(0.0, 0.0));
 }
 
-TEST_F(ImageSource, IntegerSamplesKeepTheirValues)
-{
+TEST_F(ImageSource, IntegerSamplesKeepTheirValues) {
     writeImage<std::uint8_t>(path("8.png"), 2, 2, 1, TypeDesc::UINT8, {0, 1, 254, 255});
     EXPECT_EQ(read(path("8.png")).heights, (std::vector<float>{254, 255, 0, 1}));
     writeImage<std::uint16_t>(path("16.png"), 2, 2, 1, TypeDesc::UINT16, {0, 257, 40000, 65535});
@@ -140,8 +130,7 @@ TEST_F(ImageSource, IntegerSamplesKeepTheirValues)
     EXPECT_EQ(read(path("s32.tif")).heights, (std::vector<float>{65536, -2147483648.0f, -5, 16777215}));
 }
 
-TEST_F(ImageSource, LargeIntegersKeepTheirDigitsUntilTheyAreScaled)
-{
+TEST_F(ImageSource, LargeIntegersKeepTheirDigitsUntilTheyAreScaled) {
     writeImage<std::uint32_t>(path("32.tif"), 2, 2, 1, TypeDesc::UINT32, {4000000001u, 4000000002u, 4000000003u, 4000000004u});
     HeightFileOptions options;
     options.heightOffset = -4000000000.0;
@@ -153,8 +142,7 @@ TEST_F(ImageSource, LargeIntegersKeepTheirDigitsUntilTheyAreScaled)
     EXPECT_TRUE(std::isnan(map.at(1, 0)));
 }
 
-TEST_F(ImageSource, FloatingPointSamplesKeepTheirValues)
-{
+TEST_F(ImageSource, FloatingPointSamplesKeepTheirValues) {
     const std::vector<float> values{-1234.5f, 0.0f, 65504.0f, 0.25f};
     const std::vector<float> flipped{65504.0f, 0.25f, -1234.5f, 0.0f};
     writeImage<float>(path("f.tif"), 2, 2, 1, TypeDesc::FLOAT, values);
@@ -168,8 +156,7 @@ TEST_F(ImageSource, FloatingPointSamplesKeepTheirValues)
     EXPECT_EQ(read(path("h.exr")).heights, (std::vector<float>{65504.0f, 0.25f, -1234.0f, 0.0f}));
 }
 
-TEST_F(ImageSource, InfiniteAndMissingSamplesAreHoles)
-{
+TEST_F(ImageSource, InfiniteAndMissingSamplesAreHoles) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     writeImage<float>(path("f.tif"), 2, 2, 1, TypeDesc::FLOAT, {infinity, -9999.9f, std::nanf(""), 3.0f});
     HeightFileOptions options;
@@ -181,8 +168,7 @@ TEST_F(ImageSource, InfiniteAndMissingSamplesAreHoles)
     EXPECT_EQ(map.at(1, 0), 3.0f);
 }
 
-TEST_F(ImageSource, TiledAndTallImagesAreReadWhole)
-{
+TEST_F(ImageSource, TiledAndTallImagesAreReadWhole) {
     const int width = 100, height = 150;
     const auto pixels = noise<std::uint16_t>(std::size_t(width * height));
     writeImage(path("tiled.tif"), width, height, 1, TypeDesc::UINT16, pixels, 32);
@@ -196,8 +182,7 @@ TEST_F(ImageSource, TiledAndTallImagesAreReadWhole)
     }
 }
 
-TEST_F(ImageSource, AlphaDoesNotTouchTheHeights)
-{
+TEST_F(ImageSource, AlphaDoesNotTouchTheHeights) {
     writeImage<std::uint8_t>(path("ga.png"), 2, 2, 2, TypeDesc::UINT8, {10, 0, 20, 128, 30, 255, 40, 1});
     EXPECT_EQ(read(path("ga.png")).heights, (std::vector<float>{30, 40, 10, 20}));
     HeightFileOptions options;
@@ -205,8 +190,7 @@ TEST_F(ImageSource, AlphaDoesNotTouchTheHeights)
     EXPECT_EQ(read(path("ga.png"), options).heights, (std::vector<float>{255, 1, 0, 128}));
 }
 
-TEST_F(ImageSource, ThreeChannelsNeedAChoice)
-{
+TEST_F(ImageSource, ThreeChannelsNeedAChoice) {
     writeImage<std::uint8_t>(path("rgb.png"), 2, 2, 3, TypeDesc::UINT8, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
     const std::string problem = problemOf(path("rgb.png"));
     EXPECT_NE(problem.find("3 channels"), std::string::npos) << problem;
@@ -220,8 +204,7 @@ TEST_F(ImageSource, ThreeChannelsNeedAChoice)
     }
 }
 
-TEST_F(ImageSource, ATruncatedImageIsAnError)
-{
+TEST_F(ImageSource, ATruncatedImageIsAnError) {
     const auto pixels = noise<std::uint8_t>(200 * 200);
     HeightFileOptions options;
     options.channel = 0;
@@ -234,8 +217,7 @@ TEST_F(ImageSource, ATruncatedImageIsAnError)
         }
 }
 
-TEST_F(ImageSource, ATruncatedSixteenBitImageIsAnError)
-{
+TEST_F(ImageSource, ATruncatedSixteenBitImageIsAnError) {
     const auto pixels = noise<std::uint16_t>(200 * 200);
     for (const char* name : {"t16.png", "t16.tif"})
         for (double part : {0.99, 0.6}) {
@@ -245,8 +227,7 @@ TEST_F(ImageSource, ATruncatedSixteenBitImageIsAnError)
         }
 }
 
-TEST_F(ImageSource, ATruncatedTiffSaysSoInItsMessageAlone)
-{
+TEST_F(ImageSource, ATruncatedTiffSaysSoInItsMessageAlone) {
     // Rasters open first, so that their library has taken over the error output of the shared TIFF library.
     writeImage(path("whole.tif"), 200, 200, 1, TypeDesc::UINT16, noise<std::uint16_t>(200 * 200));
     ASSERT_EQ(problemOf(path("whole.tif")), "no error");
@@ -256,14 +237,12 @@ TEST_F(ImageSource, ATruncatedTiffSaysSoInItsMessageAlone)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(ImageSource, AnImageOfOneRowIsAnError)
-{
+TEST_F(ImageSource, AnImageOfOneRowIsAnError) {
     writeImage<std::uint8_t>(path("line.png"), 4, 1, 1, TypeDesc::UINT8, {1, 2, 3, 4});
     EXPECT_NE(problemOf(path("line.png")).find("4 x 1"), std::string::npos);
 }
 
-TEST_F(ImageSource, ContentCountsAndNotTheExtension)
-{
+TEST_F(ImageSource, ContentCountsAndNotTheExtension) {
     writeImage<std::uint8_t>(path("a.png"), 2, 2, 1, TypeDesc::UINT8, {1, 2, 3, 4});
     std::filesystem::rename(path("a.png"), path("a.tif"));
     EXPECT_EQ(read(path("a.tif")).heights, (std::vector<float>{3, 4, 1, 2}));

@@ -10,8 +10,7 @@ using namespace terrain;
 namespace {
 
 /// Heights that differ everywhere: column + 1000 * row.
-HeightMap numbered(int columns, int rows)
-{
+HeightMap numbered(int columns, int rows) {
     HeightMap map;
     map.columns = columns;
     map.rows = rows;
@@ -20,16 +19,14 @@ HeightMap numbered(int columns, int rows)
     return map;
 }
 
-std::shared_ptr<const HeightSource> sourceOf(HeightMap map)
-{
+std::shared_ptr<const HeightSource> sourceOf(HeightMap map) {
     auto source = makeMapSource(std::move(map));
     EXPECT_TRUE(source) << source.error().message();
     return source.value();
 }
 
 /// Checks one tile, sample by sample and in its extremes, against the map.
-void expectTileOfMap(const HeightSource& source, const TileKey& key)
-{
+void expectTileOfMap(const HeightSource& source, const TileKey& key) {
     const auto loaded = source.load(key);
     ASSERT_TRUE(loaded) << loaded.error().message();
     const HeightTile& tile = loaded.value();
@@ -51,8 +48,7 @@ void expectTileOfMap(const HeightSource& source, const TileKey& key)
 
 }  // namespace
 
-TEST(MapSource, EveryTileOfEveryLevelHoldsTheMapsSamples)
-{
+TEST(MapSource, EveryTileOfEveryLevelHoldsTheMapsSamples) {
     for (const auto& [columns, rows] : {std::pair{2, 2}, {9, 9}, {300, 7}, {13, 130}, {65, 65}}) {
         const auto source = sourceOf(numbered(columns, rows));
         for (int cells : {1, 3, 4, 64})
@@ -63,8 +59,7 @@ TEST(MapSource, EveryTileOfEveryLevelHoldsTheMapsSamples)
     }
 }
 
-TEST(MapSource, NeighbouringTilesShareTheirBorder)
-{
+TEST(MapSource, NeighbouringTilesShareTheirBorder) {
     const auto source = sourceOf(numbered(33, 33));
     const HeightTile west = source->load({1, 0, 0, 4}).value();
     const HeightTile east = source->load({1, 1, 0, 4}).value();
@@ -73,8 +68,7 @@ TEST(MapSource, NeighbouringTilesShareTheirBorder)
         EXPECT_EQ(west.heights[std::size_t(row * west.columns + west.columns - 1)], east.heights[std::size_t(row * east.columns)]);
 }
 
-TEST(MapSource, LevelsGrowByOneForEveryDoublingOfTheLongerSide)
-{
+TEST(MapSource, LevelsGrowByOneForEveryDoublingOfTheLongerSide) {
     EXPECT_EQ(sourceOf(numbered(2, 2))->levelCount(), 1);
     EXPECT_EQ(sourceOf(numbered(3, 2))->levelCount(), 2);
     EXPECT_EQ(sourceOf(numbered(2, 5))->levelCount(), 3);
@@ -82,8 +76,7 @@ TEST(MapSource, LevelsGrowByOneForEveryDoublingOfTheLongerSide)
     EXPECT_EQ(sourceOf(numbered(129, 65))->levelCount(), 8);
 }
 
-TEST(MapSource, ACoarseTileKnowsThePeakBetweenItsSamples)
-{
+TEST(MapSource, ACoarseTileKnowsThePeakBetweenItsSamples) {
     HeightMap map = numbered(9, 9);
     map.heights[std::size_t(5 * 9 + 3)] = 1e6f;
     map.heights[std::size_t(3 * 9 + 5)] = -1e6f;
@@ -93,8 +86,7 @@ TEST(MapSource, ACoarseTileKnowsThePeakBetweenItsSamples)
     EXPECT_EQ(tile.minimum, -1e6f);
 }
 
-TEST(MapSource, HolesCountNeitherAsMinimumNorAsMaximum)
-{
+TEST(MapSource, HolesCountNeitherAsMinimumNorAsMaximum) {
     constexpr float hole = std::numeric_limits<float>::quiet_NaN();
     HeightMap map = numbered(3, 2);
     map.heights = {hole, 5.0f, hole, 7.0f, hole, hole};
@@ -109,18 +101,17 @@ TEST(MapSource, HolesCountNeitherAsMinimumNorAsMaximum)
     EXPECT_TRUE(std::isnan(none.maximum));
 }
 
-TEST(MapSource, KeysOutsideThePyramidAreErrors)
-{
+TEST(MapSource, KeysOutsideThePyramidAreErrors) {
     constexpr int huge = std::numeric_limits<int>::max();
     const auto source = sourceOf(numbered(9, 5));
-    for (const TileKey& key : {TileKey{-1, 0, 0, 4}, TileKey{4, 0, 0, 4}, TileKey{0, 2, 0, 4}, TileKey{0, 0, 1, 4}, TileKey{0, -1, 0, 4},
-                               TileKey{0, 0, 0, 0}, TileKey{0, 0, 0, -5}, TileKey{3, huge, huge, huge}, TileKey{huge, 0, 0, 4}})
+    for (const TileKey& key :
+         {TileKey{-1, 0, 0, 4}, TileKey{4, 0, 0, 4}, TileKey{0, 2, 0, 4}, TileKey{0, 0, 1, 4}, TileKey{0, -1, 0, 4},
+          TileKey{0, 0, 0, 0}, TileKey{0, 0, 0, -5}, TileKey{3, huge, huge, huge}, TileKey{huge, 0, 0, 4}})
         EXPECT_FALSE(source->load(key)) << key.level << " " << key.column << " " << key.row << " " << key.cells;
     EXPECT_TRUE(source->load({3, 0, 0, huge}));
 }
 
-TEST(MapSource, SizesThatDoNotFitTheSamplesAreErrors)
-{
+TEST(MapSource, SizesThatDoNotFitTheSamplesAreErrors) {
     EXPECT_FALSE(makeMapSource(HeightMap{}));
     EXPECT_FALSE(makeMapSource(numbered(1, 5)));
     HeightMap map = numbered(4, 4);
@@ -133,8 +124,7 @@ TEST(MapSource, SizesThatDoNotFitTheSamplesAreErrors)
     EXPECT_FALSE(makeMapSource(map));
 }
 
-TEST(MapSource, ExtentAndBytesAreThoseOfTheMap)
-{
+TEST(MapSource, ExtentAndBytesAreThoseOfTheMap) {
     HeightMap map = numbered(5, 4);
     map.origin = {100.0, 200.0};
     map.spacing = {10.0, 20.0};

@@ -28,35 +28,31 @@ namespace {
 
 class RasterSource : public testing::Test {
 protected:
-    RasterSource() : folder_(std::filesystem::temp_directory_path() / ("soterrain-raster-" + std::to_string(getpid())))
-    {
+    RasterSource() : folder_(std::filesystem::temp_directory_path() / ("soterrain-raster-" + std::to_string(getpid()))) {
         std::filesystem::create_directories(folder_);
     }
     ~RasterSource() override { std::filesystem::remove_all(folder_); }
 
-    void SetUp() override
-    {
+    void SetUp() override {
         if (!hasRasterReader()) GTEST_SKIP() << "built without GDAL";
     }
 
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-    static HeightMap read(const std::string& path, const HeightFileOptions& options = {})
-    {
+    static HeightMap read(const std::string& path, const HeightFileOptions& options = {}) {
         const auto source = openHeightFile(path, options);
         EXPECT_TRUE(source) << source.error().message();
         return source ? *source.value()->map() : HeightMap{};
     }
 
-    static std::string problemOf(const std::string& path, const HeightFileOptions& options = {})
-    {
+    static std::string problemOf(const std::string& path, const HeightFileOptions& options = {}) {
         const auto source = openHeightFile(path, options);
         return source ? "no error" : source.error().message();
     }
 
-    std::string writeGrid(const std::string& rows) const
-    {
-        std::ofstream(path("grid.asc")) << "ncols 3\nnrows 2\nxllcorner 1000\nyllcorner 2000\ncellsize 10\nNODATA_value -9999\n" << rows;
+    std::string writeGrid(const std::string& rows) const {
+        std::ofstream(path("grid.asc")) << "ncols 3\nnrows 2\nxllcorner 1000\nyllcorner 2000\ncellsize 10\nNODATA_value -9999\n"
+                                        << rows;
         return path("grid.asc");
     }
 
@@ -65,8 +61,7 @@ protected:
 
 }  // namespace
 
-TEST_F(RasterSource, AnAsciiGridHasItsPlaceSpacingAndHoles)
-{
+TEST_F(RasterSource, AnAsciiGridHasItsPlaceSpacingAndHoles) {
     const HeightMap map = read(writeGrid("1 2 3\n4 -9999 6.5\n"));
     EXPECT_EQ(map.columns, 3);
     EXPECT_EQ(map.rows, 2);
@@ -79,8 +74,7 @@ TEST_F(RasterSource, AnAsciiGridHasItsPlaceSpacingAndHoles)
     EXPECT_EQ(map.at(2, 0), 6.5f);
 }
 
-TEST_F(RasterSource, OptionsOverrideTheFilesPlaceAndAddToItsHoles)
-{
+TEST_F(RasterSource, OptionsOverrideTheFilesPlaceAndAddToItsHoles) {
     HeightFileOptions options;
     options.noData = 3.0;
     options.heightScale = 2.0;
@@ -95,8 +89,7 @@ TEST_F(RasterSource, OptionsOverrideTheFilesPlaceAndAddToItsHoles)
     EXPECT_EQ(map.at(2, 0), 12.0f);
 }
 
-TEST_F(RasterSource, ATruncatedAsciiGridIsAnErrorAndSilent)
-{
+TEST_F(RasterSource, ATruncatedAsciiGridIsAnErrorAndSilent) {
     const std::string file = writeGrid("1 2 3\n4");
     testing::internal::CaptureStderr();
     EXPECT_NE(problemOf(file), "no error");
@@ -119,8 +112,7 @@ struct Tiff {
 
 /// Writes it and hands the data set to `more` before it is closed.
 template <class More>
-void writeTiff(const std::string& path, Tiff tiff, More more)
-{
+void writeTiff(const std::string& path, Tiff tiff, More more) {
     GDALAllRegister();
     auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
     ASSERT_NE(driver, nullptr);
@@ -137,15 +129,13 @@ void writeTiff(const std::string& path, Tiff tiff, More more)
     GDALClose(dataset);
 }
 
-void writeTiff(const std::string& path, const Tiff& tiff)
-{
+void writeTiff(const std::string& path, const Tiff& tiff) {
     writeTiff(path, tiff, [](GDALDataset&) {});
 }
 
 }  // namespace
 
-TEST_F(RasterSource, AGeoTiffHasItsPlaceAndProjection)
-{
+TEST_F(RasterSource, AGeoTiffHasItsPlaceAndProjection) {
     writeTiff(path("utm.tif"), {}, [](GDALDataset& dataset) {
         OGRSpatialReference reference;
         reference.SetWellKnownGeogCS("WGS84");
@@ -159,8 +149,7 @@ TEST_F(RasterSource, AGeoTiffHasItsPlaceAndProjection)
     EXPECT_NE(map.projection.find("UTM"), std::string::npos) << map.projection;
 }
 
-TEST_F(RasterSource, RowsFromSouthAndColumnsFromEastAreTurned)
-{
+TEST_F(RasterSource, RowsFromSouthAndColumnsFromEastAreTurned) {
     Tiff tiff;
     tiff.transform = {100.0, -10.0, 0.0, 50.0, 0.0, 20.0};
     writeTiff(path("turned.tif"), tiff);
@@ -170,8 +159,7 @@ TEST_F(RasterSource, RowsFromSouthAndColumnsFromEastAreTurned)
     EXPECT_EQ(map.origin, glm::dvec2(75.0, 60.0));
 }
 
-TEST_F(RasterSource, NoDataIsComparedBeforeTheBandsScaleApplies)
-{
+TEST_F(RasterSource, NoDataIsComparedBeforeTheBandsScaleApplies) {
     writeTiff(path("scaled.tif"), {}, [](GDALDataset& dataset) {
         dataset.GetRasterBand(1)->SetNoDataValue(5.0);
         dataset.GetRasterBand(1)->SetScale(0.5);
@@ -183,12 +171,12 @@ TEST_F(RasterSource, NoDataIsComparedBeforeTheBandsScaleApplies)
     EXPECT_EQ(map.at(0, 1), 100.5f);
 }
 
-TEST_F(RasterSource, AFloatRasterFindsItsNoDataInSpiteOfRounding)
-{
+TEST_F(RasterSource, AFloatRasterFindsItsNoDataInSpiteOfRounding) {
     Tiff tiff;
     tiff.type = GDT_Float32;
     tiff.samples = {-9999.9, 2.25, -3.4028234663852886e38, 4, 5, 6};
-    writeTiff(path("float.tif"), tiff, [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-3.4028234663852886e38); });
+    writeTiff(path("float.tif"), tiff,
+              [](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetNoDataValue(-3.4028234663852886e38); });
     HeightFileOptions options;
     options.noData = -9999.9;
     const HeightMap map = read(path("float.tif"), options);
@@ -197,16 +185,14 @@ TEST_F(RasterSource, AFloatRasterFindsItsNoDataInSpiteOfRounding)
     EXPECT_TRUE(std::isnan(map.at(2, 1)));
 }
 
-TEST_F(RasterSource, ARotatedRasterIsAnError)
-{
+TEST_F(RasterSource, ARotatedRasterIsAnError) {
     Tiff tiff;
     tiff.transform = {0.0, 10.0, 1.0, 0.0, 1.0, -10.0};
     writeTiff(path("rotated.tif"), tiff);
     EXPECT_NE(problemOf(path("rotated.tif")).find("rotated"), std::string::npos);
 }
 
-TEST_F(RasterSource, ThreeBandsNeedAChoice)
-{
+TEST_F(RasterSource, ThreeBandsNeedAChoice) {
     Tiff tiff;
     tiff.bands = 3;
     writeTiff(path("bands.tif"), tiff);
@@ -218,16 +204,14 @@ TEST_F(RasterSource, ThreeBandsNeedAChoice)
     EXPECT_NE(problemOf(path("bands.tif"), options), "no error");
 }
 
-TEST_F(RasterSource, ComplexNumbersAreAnError)
-{
+TEST_F(RasterSource, ComplexNumbersAreAnError) {
     Tiff tiff;
     tiff.type = GDT_CFloat32;
     writeTiff(path("complex.tif"), tiff);
     EXPECT_NE(problemOf(path("complex.tif")).find("complex"), std::string::npos);
 }
 
-TEST_F(RasterSource, ATiffWithoutAPlaceIsReadAllTheSame)
-{
+TEST_F(RasterSource, ATiffWithoutAPlaceIsReadAllTheSame) {
     Tiff tiff;
     tiff.georeferenced = false;
     writeTiff(path("plain.tif"), tiff);
@@ -236,11 +220,10 @@ TEST_F(RasterSource, ATiffWithoutAPlaceIsReadAllTheSame)
     EXPECT_EQ(map.spacing, glm::dvec2(1.0, 1.0));
 }
 
-TEST_F(RasterSource, AnHgtFileIsReadInDegrees)
-{
+TEST_F(RasterSource, AnHgtFileIsReadInDegrees) {
     const int side = 1201;
     std::string bytes(std::size_t(side) * side * 2, '\0');
-    bytes[1] = 77;  // the north-western sample: 77 in big endian
+    bytes[1] = 77;          // the north-western sample: 77 in big endian
     bytes[2] = char(0x80);  // its eastern neighbour: -32768, no data
     std::ofstream(path("N50E015.hgt"), std::ios::binary) << bytes;
     const HeightMap map = read(path("N50E015.hgt"));
@@ -253,8 +236,7 @@ TEST_F(RasterSource, AnHgtFileIsReadInDegrees)
     EXPECT_NEAR(map.origin.y, 50.0, 1e-9);
 }
 
-TEST_F(RasterSource, ATruncatedGeoTiffIsAnErrorAndSilent)
-{
+TEST_F(RasterSource, ATruncatedGeoTiffIsAnErrorAndSilent) {
     Tiff tiff;
     tiff.columns = tiff.rows = 300;
     tiff.samples.assign(300 * 300, 1.0);
@@ -268,8 +250,7 @@ TEST_F(RasterSource, ATruncatedGeoTiffIsAnErrorAndSilent)
     }
 }
 
-TEST_F(RasterSource, FilesOpenInSeveralThreadsAtOnce)
-{
+TEST_F(RasterSource, FilesOpenInSeveralThreadsAtOnce) {
     writeTiff(path("a.tif"), {});
     std::vector<std::thread> threads;
     std::array<bool, 4> good{};
