@@ -1,0 +1,119 @@
+#include "gl/TerrainRenderer.h"
+
+#include <algorithm>
+
+namespace terrain {
+
+namespace {
+
+const void* offset(std::size_t bytes)
+{
+    return reinterpret_cast<const void*>(bytes);
+}
+
+}  // namespace
+
+void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& source)
+{
+    // In pieces, so that no second copy of the whole grid is ever in memory.
+    constexpr std::size_t kPiece = 1u << 16;
+    const std::size_t count = std::size_t(grid.columns()) * std::size_t(grid.rows()), stride = format_.stride();
+    positions_.fill(GL_ARRAY_BUFFER, nullptr, count * sizeof(glm::vec3), GL_STATIC_DRAW);
+    if (stride > 0) attributes_.fill(GL_ARRAY_BUFFER, nullptr, count * stride, GL_STATIC_DRAW);
+    std::vector<glm::vec3> points;
+    std::vector<std::uint8_t> attributes;
+    for (std::size_t first = 0; first < count; first += kPiece) {
+        const std::size_t size = std::min(kPiece, count - first);
+        points.resize(size);
+        attributes.resize(size * stride);
+        for (std::size_t i = 0; i < size; ++i) {
+            const std::size_t sample = first + i;
+            points[i] = grid.position(int(sample % std::size_t(grid.columns())), int(sample / std::size_t(grid.columns())));
+            if (stride > 0) source.write(std::uint32_t(sample), attributes.data() + i * stride);
+        }
+        positions_.update(GL_ARRAY_BUFFER, first * sizeof(glm::vec3), points.data(), size * sizeof(glm::vec3));
+        if (stride > 0) attributes_.update(GL_ARRAY_BUFFER, first * stride, attributes.data(), size * stride);
+    }
+    uploaded_ += count * (sizeof(glm::vec3) + stride);
+}
+
+void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& source, bool everything)
+{
+    if (list.positionsChanged || everything) {
+        positions_.fill(GL_ARRAY_BUFFER, list.positions.data(), list.positions.size_bytes(), GL_STREAM_DRAW);
+        uploaded_ += list.positions.size_bytes();
+    }
+    const std::size_t stride = format_.stride();
+    if (stride == 0 || (list.newVertices.empty() && !everything)) return;
+    mirror_.resize(list.samples.size() * stride);
+    if (everything)
+        for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex) source.write(list.samples[vertex], mirror_.data() + vertex * stride);
+    else
+        for (const std::uint32_t vertex : list.newVertices) source.write(list.samples[vertex], mirror_.data() + vertex * stride);
+    attributes_.fill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size(), GL_STREAM_DRAW);
+    uploaded_ += mirror_.size();
+}
+
+std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source)
+{
+    uploaded_ = 0;
+    const bool everything = !positions_.exists() || format_ != source.format() || version_ != source.version();
+    format_ = source.format();
+    version_ = source.version();
+    if (!list.wholeGrid)
+        uploadPool(list, source, everything);
+    else if (everything || list.positionsChanged)
+        uploadSamples(grid, source);
+    if (list.indicesChanged) {
+        indices_.fill(GL_ELEMENT_ARRAY_BUFFER, list.indices.data(), list.indices.size_bytes(), list.wholeGrid ? GL_STATIC_DRAW : GL_STREAM_DRAW);
+        indexCount_ = std::uint32_t(list.indices.size());
+        uploaded_ += list.indices.size_bytes();
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    return uploaded_;
+}
+
+void TerrainRenderer::draw() const
+{
+    if (indexCount_ == 0) return;
+    glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
+    positions_.bind(GL_ARRAY_BUFFER);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glVertexPointer(3, GL_FLOAT, sizeof(glm::vec3), nullptr);
+    const GLsizei stride = GLsizei(format_.stride());
+    std::size_t at = 0;
+    if (stride > 0) attributes_.bind(GL_ARRAY_BUFFER);
+    if (format_.normals) {
+        glEnableClientState(GL_NORMAL_ARRAY);
+        glNormalPointer(GL_SHORT, stride, offset(at));
+        at += 8;
+    }
+    if (format_.colours) {
+        glEnableClientState(GL_COLOR_ARRAY);
+        glColorPointer(4, GL_UNSIGNED_BYTE, stride, offset(at));
+        at += 4;
+    }
+    for (const int unit : format_.textureUnits) {
+        glClientActiveTexture(GLenum(GL_TEXTURE0 + unit));
+        glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+        glTexCoordPointer(2, GL_FLOAT, stride, offset(at));
+        at += 8;
+    }
+    indices_.bind(GL_ELEMENT_ARRAY_BUFFER);
+    glDrawElements(GL_TRIANGLES, GLsizei(indexCount_), GL_UNSIGNED_INT, nullptr);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    glPopClientAttrib();
+}
+
+std::vector<GLuint> TerrainRenderer::release()
+{
+    std::vector<GLuint> names;
+    for (GlBuffer* buffer : {&positions_, &attributes_, &indices_})
+        if (const GLuint name = buffer->release()) names.push_back(name);
+    indexCount_ = 0;
+    return names;
+}
+
+}  // namespace terrain

@@ -1,0 +1,62 @@
+// Draws any DrawList with plain vertex arrays under whatever GL state is current.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gl/GlObjects.h"
+#include "height/SampleGrid.h"
+#include "lod/DrawList.h"
+
+namespace terrain {
+
+/// What a vertex carries beside its position. Interleaved in this order: normal (four 16-bit integers, the last unused), colour (four
+/// bytes), then two floats for each texture unit.
+struct VertexFormat {
+    bool normals = false;
+    bool colours = false;
+    std::vector<int> textureUnits;  ///< those that get explicit coordinates
+
+    std::size_t stride() const { return (normals ? 8u : 0u) + (colours ? 4u : 0u) + textureUnits.size() * 8u; }
+    bool operator==(const VertexFormat&) const = default;
+};
+
+/// Writes what VertexFormat describes.
+class VertexSource {
+public:
+    virtual ~VertexSource() = default;
+    virtual const VertexFormat& format() const = 0;
+    /// Changes whenever what write() gives may have changed for samples that were written before.
+    virtual std::uint64_t version() const = 0;
+    /// `out` has format().stride() bytes.
+    virtual void write(std::uint32_t sample, std::uint8_t* out) const = 0;
+};
+
+/// The buffers of one view in one GL context. The vertices are the samples themselves, so lights, fog, clip planes, texture units and the
+/// user's shader programs act on them as on any shape.
+class TerrainRenderer {
+public:
+    /// Brings the buffers up to date with the list. Returns the bytes sent to GL.
+    std::size_t upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source);
+    /// One draw call. Client array state is restored; the current colour and normal are undefined after it where the format has them.
+    void draw() const;
+    std::uint32_t triangles() const { return indexCount_ / 3; }
+    std::size_t bufferBytes() const { return positions_.bytes() + attributes_.bytes() + indices_.bytes(); }
+    std::size_t memoryBytes() const { return mirror_.capacity(); }
+    /// Names of all buffers, which are the caller's to delete; forgets them.
+    std::vector<GLuint> release();
+
+private:
+    void uploadSamples(const SampleGrid& grid, const VertexSource& source);
+    void uploadPool(const DrawList& list, const VertexSource& source, bool everything);
+
+    GlBuffer positions_, attributes_, indices_;
+    VertexFormat format_;
+    std::uint64_t version_ = 0;
+    std::vector<std::uint8_t> mirror_;  ///< attributes of a pool of vertices
+    std::uint32_t indexCount_ = 0;
+    std::size_t uploaded_ = 0;
+};
+
+}  // namespace terrain

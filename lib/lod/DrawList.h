@@ -1,0 +1,35 @@
+// What an algorithm wants drawn.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/vec3.hpp>
+
+namespace terrain {
+
+/// Index of a vertex that does not exist: outside of the grid or in a hole.
+inline constexpr std::uint32_t kNoVertex = 0xffffffffu;
+
+/// What the selection did, for statistics.
+struct SelectionReport {
+    std::uint32_t triangles = 0;
+    std::uint32_t splits = 0;
+    std::uint32_t merges = 0;
+    bool converged = true;     ///< false: the limit on operations was met, the next call goes on
+    float errorPixels = 0.0f;  ///< bound on the screen error of every sample in view; infinite when it could not be bounded
+};
+
+/// Triangles over a pool of vertices. The spans belong to the algorithm and are valid until its next selection.
+struct DrawList {
+    std::span<const glm::vec3> positions;         ///< local coordinates by vertex; free places hold stale values
+    std::span<const std::uint32_t> samples;       ///< row * columns + column by vertex
+    std::span<const std::uint32_t> indices;       ///< three a triangle, counter-clockwise in the grid's (column, row) plane
+    std::span<const std::uint32_t> newVertices;   ///< vertices that stand for another sample than at the last selection
+    bool wholeGrid = false;                       ///< vertex i is sample i: positions, samples and newVertices are empty
+    bool positionsChanged = false;                ///< since the last selection
+    bool indicesChanged = false;                  ///< when not, indices may be empty: what was drawn last is drawn again
+    SelectionReport report;
+};
+
+}  // namespace terrain

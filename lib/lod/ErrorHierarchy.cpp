@@ -1,0 +1,262 @@
+#include "lod/ErrorHierarchy.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+namespace terrain {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Heights of a regular grid, packed, so that the innermost loop runs over consecutive floats.
+class PackedHeights {
+public:
+    using Value = float;
+    explicit PackedHeights(const SampleGrid& grid) : columns_(grid.columns()), heights_(std::size_t(grid.columns()) * std::size_t(grid.rows()))
+    {
+        for (int row = 0; row < grid.rows(); ++row)
+            for (int column = 0; column < columns_; ++column) heights_[grid.index(column, row)] = grid.height(column, row);
+    }
+    float at(glm::ivec2 p) const { return heights_[std::size_t(p.y) * std::size_t(columns_) + std::size_t(p.x)]; }
+    static float length(float v) { return std::fabs(v); }
+    /// Largest distance of samples [first, last] of a row from start + i * step.
+    float rowDeviation(int row, int first, int last, float start, float step) const
+    {
+        const float* sample = heights_.data() + std::size_t(row) * std::size_t(columns_) + first;
+        float deviation = 0.0f;
+#pragma omp simd reduction(max : deviation)
+        for (int i = 0; i <= last - first; ++i) deviation = std::max(deviation, std::fabs(sample[i] - (start + float(i) * step)));
+        return deviation;
+    }
+
+private:
+    int columns_;
+    std::vector<float> heights_;
+};
+
+class CurvedPoints {
+public:
+    using Value = glm::vec3;
+    explicit CurvedPoints(const SampleGrid& grid) : grid_(grid) {}
+    glm::vec3 at(glm::ivec2 p) const { return grid_.position(p.x, p.y); }
+    static float length(const glm::vec3& v) { return glm::length(v); }
+    float rowDeviation(int row, int first, int last, const glm::vec3& start, const glm::vec3& step) const
+    {
+        float deviation = 0.0f;
+        for (int i = 0; i <= last - first; ++i)
+            deviation = std::max(deviation, glm::length(grid_.position(first + i, row) - (start + float(i) * step)));
+        return deviation;
+    }
+
+private:
+    const SampleGrid& grid_;
+};
+
+/// The rows of samples of one triangle of a diamond: calls visit(row, first column, last column).
+template <class Visit>
+void forEachRow(const DiamondShape& d, int half, Visit visit)
+{
+    const glm::ivec2 apex = d.corner[half ? 3 : 1];
+    const glm::ivec2 toCentre{d.centre.x > apex.x ? 1 : -1, d.centre.y > apex.y ? 1 : -1};
+    if (d.isSquare) {
+        for (int j = 0; j <= 2 * d.size; ++j) {
+            const int end = apex.x + toCentre.x * (2 * d.size - j);
+            visit(apex.y + toCentre.y * j, std::min(apex.x, end), std::max(apex.x, end));
+        }
+    } else if (apex.x == d.centre.x) {
+        for (int j = 0; j <= d.size; ++j) visit(apex.y + toCentre.y * j, apex.x - j, apex.x + j);
+    } else {
+        for (int k = -d.size; k <= d.size; ++k) {
+            const int from = apex.x + toCentre.x * std::abs(k), to = d.centre.x;
+            visit(apex.y + k, std::min(from, to), std::max(from, to));
+        }
+    }
+}
+
+/// Largest deviation of the samples of one triangle from the plane through its corners.
+template <class Samples>
+float triangleDeviation(const Samples& samples, const DiamondShape& d, int half)
+{
+    using Value = typename Samples::Value;
+    const glm::ivec2 apex = d.corner[half ? 3 : 1];
+    const Value atApex = samples.at(apex), at0 = samples.at(d.corner[0]), at2 = samples.at(d.corner[2]);
+    const float span = 1.0f / float(2 * d.size);
+    Value gradientX, gradientY;
+    if (d.isSquare) {
+        const bool zeroSharesRow = d.corner[0].y == apex.y;
+        const Value alongX = zeroSharesRow ? at0 : at2, alongY = zeroSharesRow ? at2 : at0;
+        gradientX = (alongX - atApex) * (d.centre.x > apex.x ? span : -span);
+        gradientY = (alongY - atApex) * (d.centre.y > apex.y ? span : -span);
+    } else {
+        const Value middle = (at0 + at2) * 0.5f;
+        const bool edgeAlongX = d.corner[0].y == d.corner[2].y;
+        const Value alongEdge = (at2 - at0) * ((edgeAlongX ? d.corner[2].x > d.corner[0].x : d.corner[2].y > d.corner[0].y) ? span : -span);
+        const bool positive = edgeAlongX ? d.centre.y > apex.y : d.centre.x > apex.x;
+        const Value across = (middle - atApex) * ((positive ? 2.0f : -2.0f) * span);
+        gradientX = edgeAlongX ? alongEdge : across;
+        gradientY = edgeAlongX ? across : alongEdge;
+    }
+    float deviation = 0.0f;
+    forEachRow(d, half, [&](int row, int first, int last) {
+        const Value start = atApex + gradientX * float(first - apex.x) + gradientY * float(row - apex.y);
+        deviation = std::max(deviation, samples.rowDeviation(row, first, last, start, gradientX));
+    });
+    return deviation;
+}
+
+/// Finest diamonds cover no sample but their corners and centre.
+template <class Samples>
+float finestDeviation(const Samples& samples, const DiamondShape& d)
+{
+    return Samples::length(samples.at(d.centre) - (samples.at(d.corner[0]) + samples.at(d.corner[2])) * 0.5f);
+}
+
+/// Whether triangles lie in the grid's valid part. States of both triangles of a diamond are packed into one byte a sample.
+class Coverage {
+public:
+    enum State : std::uint8_t { Full, Empty, Mixed };
+
+    explicit Coverage(const SampleGrid& grid) : grid_(grid)
+    {
+        for (int row = 0; row < grid.rows() && !hasHoles_; ++row)
+            for (int column = 0; column < grid.columns() && !hasHoles_; ++column) hasHoles_ = grid.isHole(column, row);
+        if (hasHoles_) states_.assign(std::size_t(grid.columns()) * std::size_t(grid.rows()), 0);
+    }
+
+    bool hasHoles() const { return hasHoles_; }
+
+    /// Children must have been asked for before. `half` is 0 for the triangle at q1, 1 for the one at q3.
+    State triangle(const DiamondShape& d, int half)
+    {
+        const glm::ivec2 apex = d.corner[half ? 3 : 1];
+        State state = Full;
+        if (!contains(apex) || !contains(d.corner[0]) || !contains(d.corner[2]))
+            state = overlapsGrid(apex, d.corner[0], d.corner[2]) ? Mixed : Empty;
+        else if (hasHoles_)
+            state = holes(d, half);
+        if (hasHoles_ && contains(d.centre)) {
+            std::uint8_t& stored = states_[grid_.index(d.centre.x, d.centre.y)];
+            stored = std::uint8_t((stored & (half ? 0x0f : 0xf0)) | (half ? state << 4 : state));
+        }
+        return state;
+    }
+
+private:
+    bool contains(glm::ivec2 p) const { return grid_.contains(p.x, p.y); }
+    bool overlapsGrid(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) const
+    {
+        return std::min({a.x, b.x, c.x}) < grid_.columns() - 1 && std::min({a.y, b.y, c.y}) < grid_.rows() - 1 &&
+               std::max({a.x, b.x, c.x}) > 0 && std::max({a.y, b.y, c.y}) > 0;
+    }
+    bool isHole(glm::ivec2 p) const { return grid_.isHole(p.x, p.y); }
+    bool cellIsHole(glm::ivec2 a, glm::ivec2 b) const
+    {
+        return isHole(a) || isHole(b) || isHole({a.x, b.y}) || isHole({b.x, a.y});
+    }
+
+    State holes(const DiamondShape& d, int half) const
+    {
+        const glm::ivec2 apex = d.corner[half ? 3 : 1];
+        bool empty[2];
+        for (int side = 0; side < 2; ++side) {
+            // Each side of the triangle next to the apex carries one half: a half cell, or a triangle of a child.
+            if (d.isFinest()) {
+                empty[side] = cellIsHole(apex, d.corner[side ? 2 : 0]);
+                continue;
+            }
+            const DiamondShape child(d.child((half ? 2 : 0) + side));
+            const int childHalf = child.corner[1] == d.centre ? 0 : 1;
+            const int stored = states_[grid_.index(child.centre.x, child.centre.y)];
+            const int state = childHalf ? stored >> 4 : stored & 0x0f;
+            if (state == Mixed) return Mixed;
+            empty[side] = state == Empty;
+        }
+        if (empty[0] != empty[1]) return Mixed;
+        if (!empty[0]) return Full;
+        // A hole that no corner shows would not be told from solid ground when it is drawn: keep splitting.
+        return isHole(apex) || isHole(d.corner[0]) || isHole(d.corner[2]) ? Empty : Mixed;
+    }
+
+    const SampleGrid& grid_;
+    bool hasHoles_ = false;
+    std::vector<std::uint8_t> states_;
+};
+
+/// Visits the centres of all diamonds, children before parents, that lie in the grid.
+template <class Visit>
+void forEachDiamondUpwards(int columns, int rows, int side, Visit visit)
+{
+    for (int s = 1; s < side; s *= 2) {
+        for (int y = 0; y < rows; y += s)
+            for (int x = (y & s) ? 0 : s; x < columns; x += 2 * s) visit(DiamondShape({x, y}));
+        for (int y = s; y < rows; y += 2 * s)
+            for (int x = s; x < columns; x += 2 * s) visit(DiamondShape({x, y}));
+    }
+}
+
+template <class Samples>
+void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage, int side, std::vector<std::uint16_t>& codes)
+{
+    forEachDiamondUpwards(grid.columns(), grid.rows(), side, [&](const DiamondShape& d) {
+        float deviation = 0.0f;
+        for (int half = 0; half < 2; ++half) {
+            const Coverage::State state = coverage.triangle(d, half);
+            if (state == Coverage::Mixed) deviation = kInfinity;
+            if (state == Coverage::Full)
+                deviation = std::max(deviation, d.isFinest() ? finestDeviation(samples, d) : triangleDeviation(samples, d, half));
+        }
+        std::uint16_t code = ErrorHierarchy::encode(deviation);
+        if (!d.isFinest())
+            for (int side = 0; side < 4; ++side) {
+                const glm::ivec2 child = d.child(side);
+                if (grid.contains(child.x, child.y)) code = std::max(code, codes[grid.index(child.x, child.y)]);
+            }
+        codes[grid.index(d.centre.x, d.centre.y)] = code;
+    });
+}
+
+}  // namespace
+
+std::uint16_t ErrorHierarchy::encode(float error)
+{
+    // The sign bit is not needed: 8 bits of exponent and 8 of mantissa remain, and their order is that of the values.
+    if (!(error > 0.0f)) return 0;
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(error);
+    return std::uint16_t((bits + 0x7fffu) >> 15);
+}
+
+float ErrorHierarchy::decode(std::uint16_t code)
+{
+    return std::bit_cast<float>(std::uint32_t(code) << 15);
+}
+
+ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()), rows_(grid.rows())
+{
+    const unsigned cells = unsigned(std::max(columns_, rows_) - 1);
+    exponent_ = int(std::bit_width(cells - 1));
+    Coverage coverage(grid);
+    hasHoles_ = coverage.hasHoles();
+    whole_ = !hasHoles_ && columns_ == side() + 1 && rows_ == side() + 1;
+    codes_.assign(std::size_t(columns_) * std::size_t(rows_), 0);
+    if (grid.isRegular())
+        measure(PackedHeights(grid), grid, coverage, side(), codes_);
+    else
+        measure(CurvedPoints(grid), grid, coverage, side(), codes_);
+}
+
+float ErrorHierarchy::error(const DiamondShape& d) const
+{
+    if (d.centre.x < columns_ && d.centre.y < rows_)
+        return decode(codes_[std::size_t(d.centre.y) * std::size_t(columns_) + std::size_t(d.centre.x)]);
+    // Beyond the grid: split as long as any of it may reach in.
+    const int reach = d.size;
+    return d.centre.x - reach < columns_ - 1 && d.centre.y - reach < rows_ - 1 ? kInfinity : 0.0f;
+}
+
+}  // namespace terrain

@@ -1,0 +1,52 @@
+// For every diamond of a grid, the exact error of drawing it flat.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "height/SampleGrid.h"
+#include "lod/DiamondTopology.h"
+
+namespace terrain {
+
+/// The error of a diamond is the largest deviation of any full-resolution sample that its two triangles cover (corners, sides and
+/// interior) from those triangles drawn flat: vertically for a regular grid, in space, at equal parameters, for a curved one. It is
+/// exact, not the sum of deviations along the hierarchy that ROAM's wedgies are, and then made monotone: at least as large as every
+/// child's, so that refining by it never has to look ahead.
+///
+/// The grid is embedded in the square of (2^n + 1)^2 vertices. A diamond with a triangle that lies partly outside of the grid or partly
+/// in a hole has an infinite error and so is always split. A cell is a hole when any of its four samples is.
+///
+/// Stored in 2 bytes a sample: the upper half of a float, rounded up, so that what is stored is never smaller than what was measured
+/// and at most 0.4 % larger. Building visits every sample about twice for each of the 2 n levels: O(N log N).
+class ErrorHierarchy {
+public:
+    ErrorHierarchy() = default;
+    explicit ErrorHierarchy(const SampleGrid& grid);
+
+    /// n: the square has 2^n cells a side; 0 for a grid of a single cell.
+    int exponent() const { return exponent_; }
+    int side() const { return 1 << exponent_; }
+    /// Error of the diamond with this centre, in units of the frame; infinite where it must be split, 0 where it need never be.
+    float error(const DiamondShape& diamond) const;
+    /// True when every triangle is to be drawn: no holes, and the grid fills its square.
+    bool isWhole() const { return whole_; }
+    bool hasHoles() const { return hasHoles_; }
+    std::size_t bytes() const { return codes_.capacity() * sizeof(std::uint16_t); }
+
+    static std::uint16_t encode(float error);
+    static float decode(std::uint16_t code);
+
+private:
+    int columns_ = 0;
+    int rows_ = 0;
+    int exponent_ = 0;
+    bool whole_ = true;
+    bool hasHoles_ = false;
+    std::vector<std::uint16_t> codes_;
+};
+
+}  // namespace terrain

@@ -1,0 +1,35 @@
+// What every algorithm of level of detail is to the nodes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/View.h"
+#include "height/SampleGrid.h"
+#include "lod/DrawList.h"
+
+namespace terrain {
+
+/// What a selection is to meet. An algorithm ignores what it has no use for.
+struct LodSettings {
+    float pixelError = 2.0f;           ///< largest screen error of any sample in view, in pixels; 0: full detail
+    std::uint32_t triangleBudget = 0;  ///< hard limit on the triangles of the mesh; 0: none
+    std::uint32_t operationLimit = 0;  ///< most splits and merges of a selection but the first; 0: no limit
+    bool cull = true;                  ///< leave out what is outside of the view volume, and do not refine it
+    bool geomorph = true;              ///< let vertices slide between the coarse and the fine surface
+    bool clockwise = false;            ///< orientation of the triangles in the grid's (column, row) plane
+
+    bool operator==(const LodSettings&) const = default;
+};
+
+/// One view's choice of triangles. It keeps no pointer to samples: select() is given them.
+class LodAlgorithm {
+public:
+    virtual ~LodAlgorithm() = default;
+    /// The same calls in the same order give the same results. The list is valid until the next call.
+    virtual DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) = 0;
+    /// Memory held.
+    virtual std::size_t bytes() const = 0;
+};
+
+}  // namespace terrain

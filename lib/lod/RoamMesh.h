@@ -1,0 +1,171 @@
+// Real-time optimally adapting mesh: one view's triangulation, refined and coarsened from frame to frame.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/View.h"
+#include "height/SampleGrid.h"
+#include "lod/DiamondTable.h"
+#include "lod/LodAlgorithm.h"
+#include "lod/TerrainModel.h"
+
+namespace terrain {
+
+/// ROAM (Duchaineau, Wolinsky, Sigeti, Miller, Aldrich, Mineev-Weinstein: "ROAMing Terrain: Real-time Optimally Adapting Meshes",
+/// Visualization 1997) over diamonds: a split queue of the diamonds that can be split, a merge queue of the split ones whose children
+/// are not (sect. 4), forced splits for a mesh without cracks (fig. 3), frustum labels inherited from the parents (sect. 6.2), a
+/// triangle budget met by splitting at the top of one queue and merging at the bottom of the other (sect. 5). Priorities are screen
+/// errors (View.h) of the exact hierarchy (ErrorHierarchy.h) instead of nested wedgies.
+///
+/// Geomorph. The vertex m of a split diamond with longest edge a-b stands at (a + b) / 2 + t (M - (A + B) / 2): capitals are the true
+/// positions, small letters the drawn ones, and t goes from 0 to 1 while the diamond's screen error goes from `kMorphStart` pixelError
+/// to pixelError. Where t never grows from parent to child, that surface is an average of the meshes { diamonds with t >= x are
+/// split } over x in [0, 1], each of which keeps the error within pixelError, so the average does as well. update() raises the t of a
+/// parent to that of its children where the order would not hold by itself.
+///
+/// The mesh keeps no pointer to samples: select() is given them.
+class RoamMesh : public LodAlgorithm {
+public:
+    static constexpr float kMorphStart = 0.85f;
+
+    RoamMesh(const TerrainModel& model, const SampleGrid& grid);
+
+    /// Adapts the mesh to a view. The first call refines until the view's error is met; later ones stop at the operation limit and say so.
+    /// The same calls in the same order give the same results.
+    DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
+
+    /// Triangles of the whole mesh, those outside of the view included.
+    std::uint32_t meshTriangles() const { return meshTriangles_; }
+    std::size_t bytes() const override;
+    std::size_t diamondCount() const { return diamonds_.size() - freeDiamonds_.size(); }
+
+private:
+    static constexpr std::uint32_t kNone = DiamondTable::kNone;
+
+    /// A diamond that is split or could be: at least one of its parents is split. What every frame reads of all of them stands here,
+    /// what it reads of the split ones only in Links, the rest of its state in arrays of its own: a frame's time goes into memory.
+    struct Diamond {
+        glm::ivec2 centre{0, 0};
+        std::array<std::uint32_t, 2> parent{kNone, kNone};  ///< those that are split, at q1 and q3
+        float lowest = 0.0f;  ///< of all samples it covers; regular grids only, others have boxes_
+        float highest = 0.0f;
+        float error = 0.0f;
+        std::uint8_t level = 0;
+        std::uint8_t splitChildren = 0;
+        std::uint8_t parentCount = 0;  ///< in the square: 1 at its rim, 0 for the root
+        bool nowhere = false;          ///< covers no valid sample
+    };
+
+    struct Links {
+        std::array<std::uint32_t, 4> child{kNone, kNone, kNone, kNone};  ///< by side: 2 * number + half; none where flat (error 0)
+        std::uint32_t vertex = kNoVertex;
+        std::uint16_t serial = 0;  ///< tells a new diamond from a dead one that had the same number
+        bool finest = false;
+        std::uint8_t solidCells = 0xf;  ///< finest: bit per cell around the centre, see cellBit()
+    };
+
+    /// A FrustumLabel and, above it, whether the diamond is split, whether it is in use, and the parity of the frame that labelled it.
+    using Label = std::uint16_t;
+    static constexpr Label kSplit = 0x100;
+    static constexpr Label kAlive = 0x200;
+    static constexpr Label kParity = 0x400;
+
+    /// The vertex of a split diamond.
+    struct Vertex {
+        glm::vec3 target{0.0f};                              ///< true position
+        float morph = 1.0f;                                  ///< t
+        std::array<std::uint32_t, 2> edge{kNoVertex, kNoVertex};  ///< vertices q0 and q2
+    };
+
+    /// Entry of a priority queue; stale once the diamond changed.
+    struct Candidate {
+        float priority;
+        std::uint32_t diamond;
+        std::uint16_t serial;
+    };
+
+    // RoamMesh.cpp: the structure
+    Box boxOfDiamond(std::uint32_t number) const;
+    void bound(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number);
+    std::uint32_t create(const SampleGrid& grid, const DiamondShape& shape);
+    void destroy(std::uint32_t number);
+    void split(const SampleGrid& grid, std::uint32_t number);
+    void adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape);
+    void merge(std::uint32_t number);
+    std::uint32_t splitTriangles(const Diamond& diamond) const { return diamond.parentCount == 2 || diamond.level == 0 ? 2 : 1; }
+    std::uint32_t addVertex(const SampleGrid& grid, glm::ivec2 at);
+    std::uint32_t find(glm::ivec2 centre) const;
+    std::uint32_t vertexAt(glm::ivec2 at) const;
+    bool inSquare(glm::ivec2 p) const { return p.x >= 0 && p.y >= 0 && p.x <= side_ && p.y <= side_; }
+    static unsigned cellBit(int dx, int dy) { return (dx > 0 ? 1u : 0u) | (dy > 0 ? 2u : 0u); }
+    std::uint8_t findSolidCells(const SampleGrid& grid, glm::ivec2 centre) const;
+
+    // RoamRefine.cpp: queues
+    void label(std::uint32_t number);
+    FrustumLabel inheritedLabel(std::uint32_t number);
+    void evaluate(std::uint32_t number);
+    void update();
+    void refine(const SampleGrid& grid, std::uint32_t limit);
+    void coarsen(std::uint32_t limit);
+    bool makeRoom(const Candidate& candidate);
+    void mergeAndQueueParents(std::uint32_t number);
+    bool isAlive(const Candidate& c) const { return links_[c.diamond].serial == c.serial; }
+    bool isSplit(std::uint32_t number) const { return (labels_[number] & kSplit) != 0; }
+    bool isOutside(std::uint32_t number) const { return (labels_[number] & kOutside) != 0; }
+    std::uint32_t triangleCost(std::uint32_t number) const;
+    void enqueue(std::uint32_t number);
+    bool isMergeable(std::uint32_t number) const { return isSplit(number) && diamonds_[number].splitChildren == 0; }
+    float splitThreshold() const;
+
+    // RoamEmit.cpp: triangles and morphs
+    void emit();
+    void emitTriangle(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
+    void emitHalfCells(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
+    void put(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+    void morph();
+    void sortByLevel();
+    void place(std::uint32_t vertex);
+
+    TerrainModel model_;
+    int side_;
+    bool whole_;
+    bool regular_;
+    glm::ivec2 lastSample_;  ///< (columns - 1, rows - 1)
+    std::vector<Diamond> diamonds_;
+    std::vector<Links> links_;
+    std::vector<Label> labels_;
+    std::vector<float> priorities_;  ///< bound on the screen error in pixels; 0 outside of the view
+    std::vector<Box> boxes_;         ///< for curved grids
+    std::vector<std::uint32_t> freeDiamonds_;
+    DiamondTable table_;
+    std::uint32_t root_ = kNone;
+    std::array<std::uint32_t, 4> corners_{};  ///< vertices at (0, 0), (side, 0), (side, side), (0, side)
+    std::uint32_t meshTriangles_ = 2;
+
+    std::vector<glm::vec3> positions_;  ///< drawn
+    std::vector<Vertex> vertices_;
+    std::vector<std::uint32_t> samples_;
+    std::vector<std::uint32_t> freeVertices_;
+    std::vector<std::uint32_t> newVertices_;
+    std::vector<std::uint32_t> indices_;
+    std::uint32_t* out_ = nullptr;  ///< where emit() writes the next index
+
+    // One selection
+    View view_;
+    LodSettings settings_;
+    std::optional<ScreenSpace> space_;  ///< none before the first selection
+    std::vector<Candidate> splitQueue_, mergeQueue_;
+    std::uint32_t operations_ = 0;
+    SelectionReport report_;
+    bool positionsChanged_ = false;
+    Label parity_ = 0;
+    std::vector<std::uint32_t> byLevel_;  ///< split diamonds with a vertex, coarse ones first; while morphing
+    bool morphed_ = false;  ///< some vertex may stand off its target
+};
+
+}  // namespace terrain

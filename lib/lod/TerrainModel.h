@@ -1,0 +1,20 @@
+// What every algorithm knows of a grid beyond its samples: built once per grid, shared by all nodes and views.
+#pragma once
+
+#include <memory>
+
+#include "lod/BoxPyramid.h"
+#include "lod/ErrorHierarchy.h"
+
+namespace terrain {
+
+/// Bounds and errors of one grid, without any pointer to the samples. Bounds come first and cheap; errors only once something is drawn
+/// with level of detail.
+struct TerrainModel {
+    std::shared_ptr<const BoxPyramid> boxes;
+    std::shared_ptr<const ErrorHierarchy> errors;
+
+    std::size_t bytes() const { return (boxes ? boxes->bytes() : 0) + (errors ? errors->bytes() : 0); }
+};
+
+}  // namespace terrain

@@ -1,0 +1,144 @@
+#include "GridCache.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include <Inventor/elements/SoCoordinateElement.h>
+#include <Inventor/misc/SoState.h>
+
+#include <SoTerrain/SoHeightMapElement.h>
+
+#include "height/HeightSource.h"
+
+using terrain::Error;
+using terrain::Result;
+using terrain::SampleGrid;
+
+namespace {
+
+std::string text(long long number)
+{
+    return std::to_string(number);
+}
+
+/// Sizes of the grid, zeros replaced, or what is wrong with them.
+Result<GridRequest> sizesFor(const GridRequest & request, long available, const char * what)
+{
+    if (request.verticesPerRow < 0 || request.verticesPerColumn < 0 || request.startIndex < 0)
+        return Error{"verticesPerRow, verticesPerColumn, startIndex", "numbers that are not negative",
+                     text(request.verticesPerRow) + ", " + text(request.verticesPerColumn) + ", " + text(request.startIndex)};
+    GridRequest sizes = request;
+    const long count = std::max(0L, available - request.startIndex);
+    if (sizes.verticesPerRow == 0 && sizes.verticesPerColumn == 0) {
+        const long side = std::lround(std::floor(std::sqrt(double(count))));
+        if (side * side != count)
+            return Error{"verticesPerRow and verticesPerColumn", "sizes, because the samples make no square", text(count) + ' ' + what};
+        sizes.verticesPerRow = sizes.verticesPerColumn = int(side);
+    }
+    if (sizes.verticesPerColumn == 0) sizes.verticesPerColumn = int(count / sizes.verticesPerRow);
+    if (sizes.verticesPerRow == 0) sizes.verticesPerRow = int(count / sizes.verticesPerColumn);
+    if (sizes.verticesPerRow < 2 || sizes.verticesPerColumn < 2)
+        return Error{"terrain", "at least 2 x 2 samples", text(sizes.verticesPerRow) + " x " + text(sizes.verticesPerColumn) + " of " +
+                     text(count) + ' ' + what};
+    const long long needed = (long long)sizes.verticesPerRow * sizes.verticesPerColumn;
+    if (needed > count)
+        return Error{"terrain", text(sizes.verticesPerRow) + " x " + text(sizes.verticesPerColumn) + " = " + text(needed) + ' ' + what +
+                     " from startIndex " + text(sizes.startIndex), text(count)};
+    return sizes;
+}
+
+}  // namespace
+
+GridCache::Entry & GridCache::entryFor(const Entry & key)
+{
+    ++use_;
+    // What was not asked for lately is of data that has changed since.
+    constexpr std::uint64_t kKept = 16;
+    std::erase_if(entries_, [this](const Entry & e) { return use_ - e.lastUse > kKept; });
+    for (Entry & e : entries_)
+        if (e.nodeId == key.nodeId && e.columns == key.columns && e.rows == key.rows && e.start == key.start &&
+            e.fromHeightMap == key.fromHeightMap) {
+            e.lastUse = use_;
+            return e;
+        }
+    entries_.push_back(key);
+    entries_.back().lastUse = use_;
+    return entries_.back();
+}
+
+Result<TerrainGrid> GridCache::complete(Entry & entry, bool withErrors)
+{
+    constexpr int kLargestSide = (1 << 15) + 1;
+    if (std::max(entry.columns, entry.rows) > kLargestSide)
+        return Error{"terrain", "at most " + text(kLargestSide) + " samples a row or column", text(entry.columns) + " x " + text(entry.rows)};
+    const auto start = std::chrono::steady_clock::now();
+    if (!entry.model.boxes) entry.model.boxes = std::make_shared<terrain::BoxPyramid>(entry.grid);
+    if (withErrors && !entry.model.errors) entry.model.errors = std::make_shared<terrain::ErrorHierarchy>(entry.grid);
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+    return TerrainGrid{entry.grid, entry.model, entry.fromHeightMap, time.count()};
+}
+
+Result<TerrainGrid> GridCache::findMap(SoState * state, const GridRequest & request, bool withErrors)
+{
+    const SoHeightMapElement * element = SoHeightMapElement::getInstance(state);
+    const terrain::HeightMap & map = *element->getSource()->map();
+    GridRequest part = request;
+    if (part.verticesPerRow == 0) part.verticesPerRow = map.columns;
+    if (part.verticesPerColumn == 0) part.verticesPerColumn = map.rows;
+    const auto sizes = sizesFor(part, long(map.heights.size()), "samples");
+    if (!sizes) return sizes.error();
+    const int column = part.startIndex % map.columns, row = part.startIndex / map.columns;
+    if (column + part.verticesPerRow > map.columns || row + part.verticesPerColumn > map.rows)
+        return Error{"terrain", text(part.verticesPerRow) + " x " + text(part.verticesPerColumn) + " samples from column " + text(column) +
+                     ", row " + text(row), "a height map of " + text(map.columns) + " x " + text(map.rows)};
+    Entry key;
+    key.nodeId = element->getNodeId();
+    key.columns = part.verticesPerRow;
+    key.rows = part.verticesPerColumn;
+    key.start = part.startIndex;
+    key.fromHeightMap = true;
+    Entry & entry = entryFor(key);
+    entry.grid = SampleGrid(map, column, row, key.columns, key.rows);
+    return complete(entry, withErrors);
+}
+
+Result<TerrainGrid> GridCache::findCoordinates(SoState * state, const GridRequest & request, bool withErrors)
+{
+    const SoCoordinateElement * element = SoCoordinateElement::getInstance(state);
+    const long available = element->getNum();
+    // Without any coordinate node the element holds one default point.
+    if (available <= 1) return Error{"terrain", "an SoHeightMap or an SoCoordinate3 before it", "neither"};
+    if (!element->is3D()) return Error{"terrain", "coordinates of an SoCoordinate3", "coordinates of an SoCoordinate4"};
+    const auto sizes = sizesFor(request, available, "coordinates");
+    if (!sizes) return sizes.error();
+    Entry key;
+    key.nodeId = element->getNodeId();
+    key.columns = sizes.value().verticesPerRow;
+    key.rows = sizes.value().verticesPerColumn;
+    key.start = sizes.value().startIndex;
+    Entry & entry = entryFor(key);
+    const float * points = element->getArrayPtr3()[key.start].getValue();
+    if (entry.model.boxes) {
+        entry.grid = entry.grid.movedTo(points);
+    } else {
+        auto grid = SampleGrid::overPoints(points, key.columns, key.rows);
+        if (!grid) return grid.error();
+        entry.grid = grid.value();
+    }
+    return complete(entry, withErrors);
+}
+
+Result<TerrainGrid> GridCache::find(SoState * state, const GridRequest & request, bool withErrors)
+{
+    const terrain::HeightSource * source = SoHeightMapElement::getInstance(state)->getSource();
+    return source && source->map() ? findMap(state, request, withErrors) : findCoordinates(state, request, withErrors);
+}
+
+std::size_t GridCache::bytes() const
+{
+    std::size_t total = 0;
+    for (const Entry & e : entries_) total += e.model.bytes();
+    return total;
+}

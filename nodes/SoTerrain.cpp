@@ -1,0 +1,32 @@
+#include <SoTerrain/SoTerrain.h>
+
+#include <SoTerrain/SoBruteForceTerrain.h>
+#include <SoTerrain/SoHeightMap.h>
+#include <SoTerrain/SoHeightMapElement.h>
+#include <SoTerrain/SoROAMTerrain.h>
+#include <SoTerrain/SoTerrainDetail.h>
+#include <SoTerrain/SoTerrainShape.h>
+
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+void SoTerrain::init()
+{
+    SoHeightMapElement::initClass();
+    SoTerrainDetail::initClass();
+    SoHeightMap::initClass();
+    SoTerrainShape::initClass();
+    SoBruteForceTerrain::initClass();
+    SoROAMTerrain::initClass();
+}
+
+const char * SoTerrain::getVersion()
+{
+    return PACKAGE_VERSION;
+}
+
+void soterrain_init(void)
+{
+    SoTerrain::init();
+}

@@ -1,0 +1,37 @@
+// What a pick on a terrain tells.
+#ifndef SOTERRAIN_SOTERRAINDETAIL_H
+#define SOTERRAIN_SOTERRAINDETAIL_H
+
+#include <Inventor/details/SoFaceDetail.h>
+#include <Inventor/details/SoSubDetail.h>
+
+/// Detail of a point on a terrain node: the cell that was hit, which of its two triangles, and the height. As an SoFaceDetail it also
+/// gives the three corners of the triangle: coordinate indices count the samples row after row, as SoQuadMesh's do; the face index
+/// is row * (columns - 1) + column.
+class SoTerrainDetail : public SoFaceDetail {
+    typedef SoFaceDetail inherited;
+    SO_DETAIL_HEADER(SoTerrainDetail);
+
+public:
+    SoTerrainDetail();
+    virtual ~SoTerrainDetail();
+    static void initClass();
+    virtual SoDetail * copy() const;
+
+    int getColumn() const { return this->column; }
+    int getRow() const { return this->row; }
+    /// 0: the triangle at the cell's first sample; 1: the one at its last.
+    int getTriangle() const { return this->triangle; }
+    /// Along the axis of the node's coordinates that heights run along (z for curved grids).
+    float getHeight() const { return this->height; }
+
+    void setCell(int column, int row, int triangle, float height);
+
+private:
+    int column;
+    int row;
+    int triangle;
+    float height;
+};
+
+#endif

@@ -1,0 +1,75 @@
+// Abstract base of the terrain nodes.
+#ifndef SOTERRAIN_SOTERRAINSHAPE_H
+#define SOTERRAIN_SOTERRAINSHAPE_H
+
+#include <memory>
+
+#include <Inventor/fields/SoSFBool.h>
+#include <Inventor/fields/SoSFFloat.h>
+#include <Inventor/fields/SoSFInt32.h>
+#include <Inventor/fields/SoSFNode.h>
+#include <Inventor/nodes/SoShape.h>
+#include <Inventor/nodes/SoSubNode.h>
+
+#include <SoTerrain/SoTerrainStatistics.h>
+
+class SbVec3f;
+class SoPath;
+
+namespace terrain {
+class LodAlgorithm;
+class SampleGrid;
+struct LodSettings;
+struct TerrainModel;
+}
+
+class SoTerrainShape : public SoShape {
+    typedef SoShape inherited;
+    SO_NODE_ABSTRACT_HEADER(SoTerrainShape);
+
+public:
+    static void initClass();
+
+    SoSFInt32 verticesPerRow;
+    SoSFInt32 verticesPerColumn;
+    SoSFInt32 startIndex;
+    SoSFFloat pixelError;
+    SoSFBool frustumCulling;
+    SoSFBool freeze;
+    SoSFNode alternateRep;
+
+    /// Figures of the latest frame drawn by this node.
+    SoTerrainStatistics getStatistics() const;
+
+    /// Height of the full-resolution terrain over (x, y) of the node's local coordinates; for a grid whose heights run along another
+    /// axis, (x, y) are the other two axes in order. The data is that of the node's place in its (first) scene graph, or of the node
+    /// at the end of \a path. FALSE outside the terrain, in a hole and without data; then nothing is written.
+    SbBool heightAt(float x, float y, float & height, SbVec3f * normal = NULL, SoPath * path = NULL);
+
+    virtual void GLRender(SoGLRenderAction * action);
+    virtual void rayPick(SoRayPickAction * action);
+    virtual void getPrimitiveCount(SoGetPrimitiveCountAction * action);
+    virtual void notify(SoNotList * list);
+
+protected:
+    SoTerrainShape();
+    virtual ~SoTerrainShape();
+
+    /// A new view's algorithm. Called while rendering.
+    virtual std::unique_ptr<terrain::LodAlgorithm> createAlgorithm(const terrain::TerrainModel & model, const terrain::SampleGrid & grid) = 0;
+    /// Adds the fields of a subclass to what all terrain nodes ask of an algorithm.
+    virtual void getSettings(terrain::LodSettings & settings) const;
+    /// Whether the algorithm needs the error hierarchy.
+    virtual bool needsErrors() const;
+    /// Posts a warning about this node, once for each text.
+    void warnOnce(const char * text) const;
+
+    virtual void computeBBox(SoAction * action, SbBox3f & box, SbVec3f & center);
+    virtual void generatePrimitives(SoAction * action);
+
+    class Private;
+    std::unique_ptr<Private> pimpl;
+    friend class Private;
+};
+
+#endif

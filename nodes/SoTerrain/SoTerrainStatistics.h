@@ -1,0 +1,26 @@
+// What a terrain node did for its latest frame.
+#ifndef SOTERRAIN_SOTERRAINSTATISTICS_H
+#define SOTERRAIN_SOTERRAINSTATISTICS_H
+
+#include <cstddef>
+#include <cstdint>
+
+/// Figures of the latest frame that a terrain node drew, in whatever view that was.
+struct SoTerrainStatistics {
+    uint64_t frame = 0;         ///< frames drawn by this node so far, over all views
+    uint32_t triangles = 0;     ///< triangles sent to GL
+    uint32_t patches = 0;       ///< draw calls
+    uint32_t splits = 0;        ///< refinements of the mesh in this frame
+    uint32_t merges = 0;        ///< coarsenings of the mesh in this frame
+    bool converged = true;      ///< false: a limit on work per frame stopped refinement, the next frames go on
+    double errorPixels = 0.0;   ///< bound on the screen error of every sample in view; at most pixelError when converged without a budget
+    std::size_t memoryBytes = 0;    ///< main memory held beyond Coin's own arrays: hierarchy, meshes
+    std::size_t bufferBytes = 0;    ///< GL buffers, all contexts
+    std::size_t uploadedBytes = 0;  ///< sent to GL buffers in this frame
+    double buildMilliseconds = 0.0;   ///< preparing the height data; 0 but in the frame that did it
+    double selectMilliseconds = 0.0;  ///< choosing the mesh
+    double uploadMilliseconds = 0.0;  ///< filling buffers
+    double drawMilliseconds = 0.0;    ///< GL draw calls, as seen by the calling thread
+};
+
+#endif

@@ -1,0 +1,274 @@
+/*!
+  \class SoTerrainShape SoTerrainShape.h SoTerrain/SoTerrainShape.h
+  \brief The SoTerrainShape class is the abstract base of all terrain nodes.
+
+  A terrain node draws a grid of samples with an algorithm of its own. All of them take the same data through the same fields, so
+  that the algorithm is one word in a file: where a file says QuadMesh, write SoROAMTerrain, and it has level of detail.
+
+  The samples are those of the SoHeightMap before the node, or else the coordinates of an SoCoordinate3, in the order of SoQuadMesh:
+  row after row, verticesPerRow points each, from startIndex on. Coordinates on a regular grid, with heights along any axis,
+  are found out to be one and cost the least; any other grid, however curved, is drawn as well, its error measured in space.
+  A point that is not finite is a hole: the cells around it are not drawn and not picked.
+
+  Normals, materials and texture coordinates are taken as SoQuadMesh takes them, with their bindings. Without normals the node computes
+  smooth ones, without texture coordinates the texture spans the terrain. With a binding per face or row a vertex has the value of the
+  face or row that begins at it. SoDrawStyle, SoComplexity, SoShapeHints, lights, fog, clip planes, several texture units and
+  shader programs act as on any Coin shape: vertices are the samples themselves, drawn from plain vertex arrays.
+
+  pixelError is a promise: no sample of the terrain that is in view is drawn further from where it belongs than that many pixels.
+
+  Picking is exact: it meets the full-resolution triangles whatever is on screen, and gives an SoTerrainDetail. So do bounding box and
+  primitives.
+*/
+
+/*!
+  \var SoSFInt32 SoTerrainShape::verticesPerRow
+  Samples of a row. 0, the default, is all columns of the height map; for coordinates it follows from their number and
+  verticesPerColumn, or, when both are 0, the grid is square.
+*/
+/*!
+  \var SoSFInt32 SoTerrainShape::verticesPerColumn
+  Samples of a column, likewise.
+*/
+/*!
+  \var SoSFInt32 SoTerrainShape::startIndex
+  Index of the first sample. As in SoQuadMesh, normals, materials and texture coordinates are counted from 0 all the same.
+*/
+/*!
+  \var SoSFFloat SoTerrainShape::pixelError
+  Largest distance on screen, in pixels of the viewport region, between where any sample in view is drawn and where it belongs. 0 is full
+  detail. Default 2. SoComplexity changes it: a value of 0.5 leaves it, each 0.25 more halves it and each 0.25 less doubles it.
+*/
+/*!
+  \var SoSFBool SoTerrainShape::frustumCulling
+  Whether parts outside of the view volume are left out. Default TRUE.
+*/
+/*!
+  \var SoSFBool SoTerrainShape::freeze
+  While TRUE the mesh that was chosen last stays, whatever the camera does: a way to look at it from outside. Default FALSE.
+*/
+/*!
+  \var SoSFNode SoTerrainShape::alternateRep
+  What a program without this library shows in place of the node. Not used by the node itself.
+*/
+
+// epoxy must come before any other GL header, and Coin's headers bring theirs.
+#include <epoxy/gl.h>
+
+#include "SoTerrainShapeP.h"
+
+#include <chrono>
+#include <cmath>
+
+#include <Inventor/SbMatrix.h>
+#include <Inventor/actions/SoGLRenderAction.h>
+#include <Inventor/actions/SoGetPrimitiveCountAction.h>
+#include <Inventor/bundles/SoMaterialBundle.h>
+#include <Inventor/elements/SoComplexityElement.h>
+#include <Inventor/elements/SoGLCacheContextElement.h>
+#include <Inventor/elements/SoGLLazyElement.h>
+#include <Inventor/elements/SoModelMatrixElement.h>
+#include <Inventor/elements/SoProjectionMatrixElement.h>
+#include <Inventor/elements/SoViewingMatrixElement.h>
+#include <Inventor/elements/SoViewportRegionElement.h>
+#include <Inventor/errors/SoDebugError.h>
+#include <Inventor/misc/SoState.h>
+
+#include <SoTerrain/SoHeightMap.h>
+#include <SoTerrain/SoTerrainDetail.h>
+
+#include <glm/matrix.hpp>
+
+#include "StateAttributes.h"
+#include "lod/BruteForceMesh.h"
+
+SO_NODE_ABSTRACT_SOURCE(SoTerrainShape);
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Coin multiplies row vectors from the left, GLM column vectors from the right, and both store the same numbers in the same order.
+glm::dmat4 toGlm(const SbMatrix & matrix)
+{
+    glm::dmat4 result;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) result[i][j] = matrix[i][j];
+    return result;
+}
+
+terrain::View viewOf(SoState * state)
+{
+    terrain::View view;
+    view.clipFromLocal = toGlm(SoProjectionMatrixElement::get(state)) * toGlm(SoViewingMatrixElement::get(state)) *
+                         toGlm(SoModelMatrixElement::get(state));
+    const SbVec2s size = SoViewportRegionElement::get(state).getViewportSizePixels();
+    view.viewportPixels = {size[0], size[1]};
+    return view;
+}
+
+}  // namespace
+
+SoTerrainShape::Private::Private(SoTerrainShape * masterArg)
+    : master(masterArg), again([](void * node, SoSensor *) { static_cast<SoTerrainShape *>(node)->touch(); }, masterArg)
+{
+}
+
+void SoTerrainShape::initClass()
+{
+    if (getClassTypeId() != SoType::badType()) return;
+    // Elements must be enabled before an action first meets the node.
+    SoHeightMap::initClass();
+    SoTerrainDetail::initClass();
+    SO_NODE_INIT_ABSTRACT_CLASS(SoTerrainShape, SoShape, "Shape");
+}
+
+SoTerrainShape::SoTerrainShape() : pimpl(new Private(this))
+{
+    SO_NODE_CONSTRUCTOR(SoTerrainShape);
+    SO_NODE_ADD_FIELD(verticesPerRow, (0));
+    SO_NODE_ADD_FIELD(verticesPerColumn, (0));
+    SO_NODE_ADD_FIELD(startIndex, (0));
+    SO_NODE_ADD_FIELD(pixelError, (2.0f));
+    SO_NODE_ADD_FIELD(frustumCulling, (TRUE));
+    SO_NODE_ADD_FIELD(freeze, (FALSE));
+    SO_NODE_ADD_FIELD(alternateRep, (NULL));
+}
+
+SoTerrainShape::~SoTerrainShape() {}
+
+SoTerrainStatistics SoTerrainShape::getStatistics() const
+{
+    return pimpl->statistics;
+}
+
+void SoTerrainShape::warnOnce(const char * text) const
+{
+    if (pimpl->warned.insert(text).second) SoDebugError::postWarning(this->getTypeId().getName().getString(), "%s", text);
+}
+
+void SoTerrainShape::getSettings(terrain::LodSettings &) const {}
+
+bool SoTerrainShape::needsErrors() const
+{
+    return true;
+}
+
+void SoTerrainShape::notify(SoNotList * list)
+{
+    // What was wrong may be right now, and is worth saying again if it is not.
+    if (list->getLastField()) pimpl->warned.clear();
+    inherited::notify(list);
+}
+
+std::optional<TerrainGrid> SoTerrainShape::Private::findGrid(SoState * state, bool withErrors)
+{
+    const GridRequest request{master->verticesPerRow.getValue(), master->verticesPerColumn.getValue(), master->startIndex.getValue()};
+    auto found = grids.find(state, request, withErrors);
+    if (found) return std::move(found).value();
+    master->warnOnce(found.error().message().c_str());
+    return std::nullopt;
+}
+
+terrain::LodSettings SoTerrainShape::Private::settingsFor(SoState * state, const TerrainGrid & data) const
+{
+    terrain::LodSettings settings;
+    const float pixels = master->pixelError.getValue();
+    if (pixels >= 0.0f)
+        settings.pixelError = pixels;
+    else
+        master->warnOnce(("pixelError: expected 0 or more pixels, found " + std::to_string(pixels) + "; 2 is taken").c_str());
+    settings.pixelError *= std::exp2(4.0f * (0.5f - SoComplexityElement::get(state)));
+    settings.cull = master->frustumCulling.getValue();
+    // Coordinates are oriented as SoQuadMesh orients them, so that SoShapeHints mean the same; a height map faces up.
+    settings.clockwise = !data.fromHeightMap || glm::determinant(data.grid.localFromFrame()) < 0.0;
+    master->getSettings(settings);
+    return settings;
+}
+
+void SoTerrainShape::Private::select(TerrainView & view, SoState * state, const TerrainGrid & data, const StateAttributes & attributes)
+{
+    const Clock::time_point start = Clock::now();
+    const terrain::DrawList list = view.algorithm->select(data.grid, viewOf(state), settingsFor(state, data));
+    statistics.selectMilliseconds = millisecondsSince(start);
+    view.report = list.report;
+    const Clock::time_point selected = Clock::now();
+    statistics.uploadedBytes = view.renderer.upload(list, data.grid, attributes);
+    statistics.uploadMilliseconds = millisecondsSince(selected);
+    view.hasMesh = true;
+    statistics.splits = list.report.splits;
+    statistics.merges = list.report.merges;
+}
+
+void SoTerrainShape::Private::render(SoGLRenderAction * action)
+{
+    SoState * state = action->getState();
+    const std::optional<TerrainGrid> data = findGrid(state, master->needsErrors());
+    if (!data || data->model.boxes->all().isEmpty()) return;
+    const std::uint64_t frame = statistics.frame + 1;
+    statistics = SoTerrainStatistics{};
+    statistics.frame = frame;
+    statistics.buildMilliseconds = data->buildMilliseconds;
+
+    TerrainView & view = views.find(ViewKey(action), frame);
+    if (view.boxes != data->model.boxes) {
+        view.boxes = data->model.boxes;
+        view.algorithm = master->createAlgorithm(data->model, data->grid);
+        view.hasMesh = false;
+    }
+    SoMaterialBundle materials(action);
+    materials.sendFirst();
+    const StateAttributes attributes(action, data->grid, true);
+    if (!master->freeze.getValue() || !view.hasMesh) select(view, state, *data, attributes);
+
+    const Clock::time_point start = Clock::now();
+    if (attributes.hasOverallNormal()) glNormal3fv(attributes.normal(0, 0).getValue());
+    view.renderer.draw();
+    if (attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
+    statistics.drawMilliseconds = millisecondsSince(start);
+
+    statistics.triangles = view.renderer.triangles();
+    statistics.patches = view.renderer.triangles() > 0 ? 1 : 0;
+    statistics.converged = view.report.converged;
+    statistics.errorPixels = view.report.errorPixels;
+    statistics.memoryBytes = grids.bytes() + views.memoryBytes();
+    statistics.bufferBytes = views.bufferBytes();
+    if (!view.report.converged && !again.isScheduled()) again.schedule();
+}
+
+void SoTerrainShape::GLRender(SoGLRenderAction * action)
+{
+    if (!this->shouldGLRender(action)) return;
+    // The mesh depends on the camera and lives in buffers: a display list around it would only be thrown away.
+    SoGLCacheContextElement::shouldAutoCache(action->getState(), SoGLCacheContextElement::DONT_AUTO_CACHE);
+    pimpl->render(action);
+}
+
+void SoTerrainShape::computeBBox(SoAction * action, SbBox3f & box, SbVec3f & center)
+{
+    const std::optional<TerrainGrid> data = pimpl->findGrid(action->getState(), false);
+    if (!data) return;
+    const terrain::BoxPyramid::Bounds & bounds = data->model.boxes->all();
+    if (bounds.isEmpty()) return;
+    for (const glm::vec3 & corner : {bounds.low, bounds.high}) {
+        const glm::dvec4 local = data->grid.localFromFrame() * glm::dvec4(corner, 1.0);
+        box.extendBy(SbVec3f(float(local.x), float(local.y), float(local.z)));
+    }
+    center = box.getCenter();
+}
+
+void SoTerrainShape::getPrimitiveCount(SoGetPrimitiveCountAction * action)
+{
+    if (!this->shouldPrimitiveCount(action)) return;
+    const std::optional<TerrainGrid> data = pimpl->findGrid(action->getState(), false);
+    if (!data) return;
+    int triangles = 0;
+    for (int row = 0; row < data->grid.rows() - 1; ++row)
+        for (int column = 0; column < data->grid.columns() - 1; ++column) triangles += terrain::isCellHole(data->grid, column, row) ? 0 : 2;
+    action->addNumTriangles(triangles);
+}

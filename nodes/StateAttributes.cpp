@@ -1,0 +1,162 @@
+#include "StateAttributes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <Inventor/actions/SoAction.h>
+#include <Inventor/elements/SoGLMultiTextureCoordinateElement.h>
+#include <Inventor/elements/SoLazyElement.h>
+#include <Inventor/elements/SoMaterialBindingElement.h>
+#include <Inventor/elements/SoMultiTextureEnabledElement.h>
+#include <Inventor/elements/SoNormalBindingElement.h>
+#include <Inventor/elements/SoNormalElement.h>
+#include <Inventor/misc/SoState.h>
+
+#include "ElementAccess.h"
+
+StateAttributes::StateAttributes(SoAction * action, const terrain::SampleGrid & grid, bool forGL) : grid_(grid)
+{
+    SoState * state = action->getState();
+    if (forGL) needsNormals_ = SoLazyElement::getLightModel(state) != SoLazyElement::BASE_COLOR;
+    if (needsNormals_) readNormals(state);
+    readMaterials(state);
+    readTextures(state, forGL);
+}
+
+void StateAttributes::readNormals(SoState * state)
+{
+    const SoNormalElement * element = SoNormalElement::getInstance(state);
+    normalCount_ = element->getNum();
+    if (normalCount_ > 0) {
+        normals_ = element->getArrayPtr();
+        const long samples = long(grid_.columns()) * grid_.rows();
+        switch (SoNormalBindingElement::get(state)) {
+        case SoNormalBindingElement::OVERALL: normalBinding_ = OVERALL; break;
+        case SoNormalBindingElement::PER_PART:
+        case SoNormalBindingElement::PER_PART_INDEXED: normalBinding_ = PER_ROW; break;
+        case SoNormalBindingElement::PER_FACE:
+        case SoNormalBindingElement::PER_FACE_INDEXED: normalBinding_ = PER_FACE; break;
+        // Too few normals for the samples: better our own than somebody else's memory.
+        default: normalBinding_ = normalCount_ >= samples ? PER_VERTEX : GENERATED; break;
+        }
+        mix(element->getNodeId());
+    }
+    mix(normalBinding_);
+    format_.normals = normalBinding_ != OVERALL;
+}
+
+void StateAttributes::readMaterials(SoState * state)
+{
+    lazy_ = SoLazyElement::getInstance(state);
+    switch (SoMaterialBindingElement::get(state)) {
+    case SoMaterialBindingElement::OVERALL: materialBinding_ = OVERALL; break;
+    case SoMaterialBindingElement::PER_PART:
+    case SoMaterialBindingElement::PER_PART_INDEXED: materialBinding_ = PER_ROW; break;
+    case SoMaterialBindingElement::PER_FACE:
+    case SoMaterialBindingElement::PER_FACE_INDEXED: materialBinding_ = PER_FACE; break;
+    default: materialBinding_ = PER_VERTEX; break;
+    }
+    if (lazy_->getNumDiffuse() <= 1) materialBinding_ = OVERALL;
+    format_.colours = materialBinding_ != OVERALL;
+    if (format_.colours) mix(LazyElementAccess::colourId(lazy_));
+    mix(materialBinding_);
+}
+
+void StateAttributes::readTextures(SoState * state, bool forGL)
+{
+    textureCoordinates_ = SoMultiTextureCoordinateElement::getInstance(state);
+    if (!forGL) return;
+    int last = -1;
+    const SbBool * enabled = SoMultiTextureEnabledElement::getEnabledUnits(state, last);
+    for (int unit = 0; unit <= last && enabled; ++unit) {
+        if (!enabled[unit]) continue;
+        const auto type = SoMultiTextureCoordinateElement::getType(state, unit);
+        mix(std::uint64_t(type) + std::uint64_t(unit) * 16);
+        // Functions are GL's own texture coordinate generation: it needs no coordinates from us.
+        if (type == SoMultiTextureCoordinateElement::FUNCTION || type == SoMultiTextureCoordinateElement::TEXGEN) continue;
+        format_.textureUnits.push_back(unit);
+        mix(TextureCoordinateElementAccess::unitId(textureCoordinates_, unit));
+    }
+}
+
+int StateAttributes::boundIndex(Binding binding, int column, int row, int count) const
+{
+    std::size_t index = 0;
+    if (binding == PER_ROW) index = std::size_t(std::min(row, grid_.rows() - 2));
+    if (binding == PER_FACE)
+        index = std::size_t(std::min(row, grid_.rows() - 2)) * std::size_t(grid_.columns() - 1) + std::size_t(std::min(column, grid_.columns() - 2));
+    if (binding == PER_VERTEX) index = grid_.index(column, row);
+    return int(std::min(index, std::size_t(std::max(count - 1, 0))));
+}
+
+SbVec3f StateAttributes::generatedNormal(int column, int row) const
+{
+    // The last valid neighbours on both sides; a missing one is replaced by the sample itself.
+    const auto neighbour = [&](int dc, int dr) {
+        const int c = std::clamp(column + dc, 0, grid_.columns() - 1), r = std::clamp(row + dr, 0, grid_.rows() - 1);
+        return grid_.isHole(c, r) ? grid_.position(column, row) : grid_.position(c, r);
+    };
+    const glm::vec3 alongColumns = neighbour(1, 0) - neighbour(-1, 0), alongRows = neighbour(0, 1) - neighbour(0, -1);
+    SbVec3f normal(alongColumns.y * alongRows.z - alongColumns.z * alongRows.y, alongColumns.z * alongRows.x - alongColumns.x * alongRows.z,
+                   alongColumns.x * alongRows.y - alongColumns.y * alongRows.x);
+    if (normal.normalize() == 0.0f) normal.setValue(0.0f, 0.0f, 1.0f);
+    // Ground is lit from above whichever way columns and rows run.
+    if (grid_.isRegular() && normal[grid_.heightAxis()] < 0.0f) normal.negate();
+    return normal;
+}
+
+SbVec3f StateAttributes::normal(int column, int row) const
+{
+    if (normalBinding_ == GENERATED) return generatedNormal(column, row);
+    return normals_[boundIndex(normalBinding_, column, row, normalCount_)];
+}
+
+SbVec2f StateAttributes::textureCoordinate(int unit, int column, int row) const
+{
+    const std::size_t index = grid_.index(column, row);
+    if (textureCoordinates_->getType(unit) == SoMultiTextureCoordinateElement::EXPLICIT &&
+        index < std::size_t(textureCoordinates_->getNum(unit))) {
+        if (textureCoordinates_->getDimension(unit) == 2) return textureCoordinates_->get2(unit, int(index));
+        const SbVec4f & four = textureCoordinates_->get4(unit, int(index));
+        return four[3] != 0.0f ? SbVec2f(four[0] / four[3], four[1] / four[3]) : SbVec2f(four[0], four[1]);
+    }
+    return SbVec2f(float(column) / float(grid_.columns() - 1), float(row) / float(grid_.rows() - 1));
+}
+
+int StateAttributes::materialIndex(int column, int row) const
+{
+    return boundIndex(materialBinding_, column, row, lazy_->getNumDiffuse());
+}
+
+void StateAttributes::write(std::uint32_t sample, std::uint8_t * out) const
+{
+    const int column = int(sample % std::uint32_t(grid_.columns())), row = int(sample / std::uint32_t(grid_.columns()));
+    if (format_.normals) {
+        const SbVec3f n = normal(column, row);
+        std::int16_t packed[4] = {0, 0, 0, 0};
+        for (int axis = 0; axis < 3; ++axis)
+            packed[axis] = std::int16_t(std::lrintf(std::clamp(n[axis], -1.0f, 1.0f) * 32767.0f));
+        std::memcpy(out, packed, sizeof packed);
+        out += sizeof packed;
+    }
+    if (format_.colours) {
+        const int index = materialIndex(column, row);
+        const int transparencies = lazy_->getNumTransparencies();
+        std::uint32_t rgba;
+        if (lazy_->isPacked()) {
+            rgba = lazy_->getPackedPointer()[index];
+        } else {
+            const float transparency = transparencies > 0 ? lazy_->getTransparencyPointer()[std::min(index, transparencies - 1)] : 0.0f;
+            rgba = lazy_->getDiffusePointer()[index].getPackedValue(transparency);
+        }
+        const std::uint8_t bytes[4] = {std::uint8_t(rgba >> 24), std::uint8_t(rgba >> 16), std::uint8_t(rgba >> 8), std::uint8_t(rgba)};
+        std::memcpy(out, bytes, sizeof bytes);
+        out += sizeof bytes;
+    }
+    for (const int unit : format_.textureUnits) {
+        const SbVec2f coordinate = textureCoordinate(unit, column, row);
+        std::memcpy(out, coordinate.getValue(), 2 * sizeof(float));
+        out += 2 * sizeof(float);
+    }
+}

@@ -1,0 +1,59 @@
+// Normals, colours and texture coordinates of the traversal state, by sample.
+#ifndef SOTERRAIN_STATEATTRIBUTES_H
+#define SOTERRAIN_STATEATTRIBUTES_H
+
+#include <Inventor/SbVec2f.h>
+#include <Inventor/SbVec3f.h>
+
+#include "gl/TerrainRenderer.h"
+#include "height/SampleGrid.h"
+
+class SoAction;
+class SoLazyElement;
+class SoNormalElement;
+class SoState;
+class SoMultiTextureCoordinateElement;
+
+/// What SoQuadMesh would take from the state for each of its vertices. As there, normals, materials and texture coordinates are
+/// counted from 0 whatever startIndex is. With bindings per face or per row, which a mesh with level of detail can't show exactly, a
+/// vertex has the value of the face or row that begins at it. Valid during the traversal.
+class StateAttributes : public terrain::VertexSource {
+public:
+    /// `forGL`: leave out what lighting and textures do not need.
+    StateAttributes(SoAction * action, const terrain::SampleGrid & grid, bool forGL);
+
+    const terrain::VertexFormat & format() const override { return format_; }
+    std::uint64_t version() const override { return version_; }
+    void write(std::uint32_t sample, std::uint8_t * out) const override;
+
+    /// Lighting is on and all vertices have the one normal().
+    bool hasOverallNormal() const { return needsNormals_ && !format_.normals; }
+    bool hasExplicitNormals() const { return normalBinding_ != GENERATED; }
+    SbVec3f normal(int column, int row) const;
+    SbVec2f textureCoordinate(int unit, int column, int row) const;
+    /// Index into the state's materials.
+    int materialIndex(int column, int row) const;
+
+private:
+    enum Binding { OVERALL, PER_ROW, PER_FACE, PER_VERTEX, GENERATED };
+
+    void readNormals(SoState * state);
+    void readMaterials(SoState * state);
+    void readTextures(SoState * state, bool forGL);
+    int boundIndex(Binding binding, int column, int row, int count) const;
+    SbVec3f generatedNormal(int column, int row) const;
+    void mix(std::uint64_t value) { version_ = (version_ ^ value) * 0x100000001b3ull; }
+
+    const terrain::SampleGrid & grid_;
+    terrain::VertexFormat format_;
+    std::uint64_t version_ = 0xcbf29ce484222325ull;
+    bool needsNormals_ = true;
+    Binding normalBinding_ = GENERATED;
+    Binding materialBinding_ = OVERALL;
+    const SbVec3f * normals_ = nullptr;
+    int normalCount_ = 0;
+    const SoLazyElement * lazy_ = nullptr;
+    const SoMultiTextureCoordinateElement * textureCoordinates_ = nullptr;
+};
+
+#endif
