@@ -9,6 +9,8 @@
 
 #include <Inventor/SbViewportRegion.h>
 #include <Inventor/actions/SoGLRenderAction.h>
+#include <Inventor/elements/SoCacheElement.h>
+#include <Inventor/elements/SoGLCacheContextElement.h>
 #include <Inventor/elements/SoModelMatrixElement.h>
 #include <Inventor/elements/SoProjectionMatrixElement.h>
 #include <Inventor/elements/SoViewingMatrixElement.h>
@@ -169,7 +171,7 @@ double ErrorSample::quantile(double part) const
     double passed = 0.0;
     for (std::size_t i = 0; i < bins_.size(); ++i) {
         passed += double(bins_[i]);
-        if (passed > target) return std::min(maximum_, double(i + 1) / binsPerPixel);
+        if (passed > target) return i == binLimit ? maximum_ : std::min(maximum_, double(i + 1) / binsPerPixel);
     }
     return maximum_;
 }
@@ -191,8 +193,12 @@ ErrorMeter::~ErrorMeter()
 void ErrorMeter::replaceMatrices(void* self, SoAction* action)
 {
     auto& meter = *static_cast<ErrorMeter*>(self);
-    if (!meter.window_ || !action->isOfType(SoGLRenderAction::getClassTypeId())) return;
+    if (!action->isOfType(SoGLRenderAction::getClassTypeId())) return;
     SoState* state = action->getState();
+    // From a render cache the terrain would be drawn without coming here first.
+    SoGLCacheContextElement::shouldAutoCache(state, SoGLCacheContextElement::DONT_AUTO_CACHE);
+    SoCacheElement::invalidate(state);
+    if (!meter.window_) return;
     SbDPMatrix m = toDouble(SoModelMatrixElement::get(state));
     m.multRight(toDouble(SoViewingMatrixElement::get(state)));
     meter.localToClip_ = m.multRight(toDouble(SoProjectionMatrixElement::get(state)));

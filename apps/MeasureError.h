@@ -47,7 +47,7 @@ private:
 /// the border of the map are left out, because the rasteriser owes no pixel there.
 ///
 /// Only GL's matrices and viewport are replaced, behind Coin's back, so the node chooses for the real camera. Shapes whose shaders get
-/// their matrices from elsewhere can't be measured so.
+/// their matrices from elsewhere can't be measured so. While a meter is in a scene, Coin keeps no render caches there.
 class ErrorMeter {
 public:
     /// Puts its hook into the group just before the terrain, which draws the grid in its own coordinates.

@@ -2,12 +2,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include <Inventor/SoDB.h>
-#include <Inventor/SoInteraction.h>
-#include <Inventor/nodekits/SoNodeKit.h>
 #include <SoTerrain/SoTerrain.h>
 
 #include "Clock.h"
+#include "CoinStart.h"
 #include "Offscreen.h"
 #include "Options.h"
 #include "Scene.h"
@@ -28,10 +26,7 @@ int show(const app::Options& options)
     if (!options.offscreen) {
         if (auto problem = app::openDisplay("SoTerrainTest")) return fail(*problem);
     }
-    SoDB::init();
-    SoNodeKit::init();
-    SoInteraction::init();
-    SoTerrain::init();
+    app::startCoin();
     auto scene = app::Scene::build(options);
     if (!scene) return fail(scene.error());
     const auto run = options.offscreen ? app::runOffscreen : app::runWindow;

@@ -14,12 +14,10 @@
 #include <string_view>
 #include <vector>
 
-#include <Inventor/SoDB.h>
-#include <Inventor/SoInteraction.h>
-#include <SoTerrain/SoTerrain.h>
 #include <nlohmann/json.hpp>
 
 #include "BenchRun.h"
+#include "CoinStart.h"
 
 namespace {
 
@@ -142,9 +140,7 @@ std::optional<ordered_json> measureInChild(const std::string& node, char** argv)
 
 int runChild(const app::BenchRequest& request)
 {
-    SoDB::init();
-    SoInteraction::init();
-    SoTerrain::init();
+    app::startCoin();
     const auto result = app::runBench(request);
     if (!result) {
         std::fprintf(stderr, "soterrain-bench: %s\n", result.error().message().c_str());
