@@ -1,0 +1,76 @@
+#!/bin/bash
+# Without a display: pictures, profile, statistics, flights and measured errors.
+. "$(dirname "$0")/common.sh"
+unset DISPLAY WAYLAND_DISPLAY
+make_raw "$SCRATCH/map.raw"
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh --offscreen=64x48 --output "$SCRATCH/probe.ppm"
+grep -q 'offscreen rendering' "$SCRATCH/err" && skip "no EGL with desktop OpenGL"
+
+# colors FILE: number of different pixel values in a PPM
+colors() {
+    tail -n +4 "$1" | od -An -v -t u1 -w3 | sort -u | wc -l
+}
+
+for algorithm in bruteforce roam indexedfaceset quadmesh; do
+    expect 0 "$TEST" -h "$SCRATCH/map.raw" -a "$algorithm" -c --offscreen=160x120 -v --frames 6 --output "$SCRATCH/$algorithm-%02d.ppm" \
+        -p "$SCRATCH/$algorithm.csv" --stats --measure-error 2 --record "$SCRATCH/$algorithm-flight.csv"
+    for i in 00 01 02 03 04 05; do
+        [ -s "$SCRATCH/$algorithm-$i.ppm" ] || { fail "$algorithm: no picture $i"; continue; }
+        [ "$(colors "$SCRATCH/$algorithm-$i.ppm")" -gt 20 ] || fail "$algorithm: picture $i shows no terrain"
+    done
+    head -1 "$SCRATCH/$algorithm.csv" | grep -qx \
+        frame,time_ms,frame_ms,select_ms,upload_ms,draw_ms,triangles,patches,error_px,resident_bytes || fail "$algorithm: profile header"
+    [ "$(wc -l <"$SCRATCH/$algorithm.csv")" = 7 ] || fail "$algorithm: not one row for every frame"
+    awk -F, 'NF != 10 { exit 1 }' "$SCRATCH/$algorithm.csv" || fail "$algorithm: rows without ten columns"
+    [ "$(cut -d, -f1 "$SCRATCH/$algorithm.csv" | tail -n +2 | tr '\n' ' ')" = "0 1 2 3 4 5 " ] || fail "$algorithm: frame numbers"
+    [ "$(wc -l <"$SCRATCH/$algorithm-flight.csv")" = 7 ] || fail "$algorithm: recorded flight"
+    for key in algorithm frames frame_ms median p95 worst triangles measured_error_px rms p999 max not_drawn renderer start_ms; do
+        grep -q "\"$key\"" "$SCRATCH/out" || fail "$algorithm: --stats lacks $key"
+    done
+    grep -q '"not_drawn": 0' "$SCRATCH/out" || { fail "$algorithm: samples were not drawn"; cat "$SCRATCH/out"; }
+    error=$(sed -n '/measured_error_px/,/}/s/.*"max": \([0-9.e-]*\).*/\1/p' "$SCRATCH/out")
+    awk -v e="$error" 'BEGIN { exit !(e != "" && e <= 2.0) }' || fail "$algorithm: measured error $error px exceeds 2"
+done
+
+# Detail grows as the error shrinks.
+triangles() {
+    expect 0 "$TEST" -h "$SCRATCH/map.raw" -a roam -e "$1" --offscreen --stats
+    sed -n '/"triangles"/,/}/s/.*"mean": \([0-9.]*\).*/\1/p' "$SCRATCH/out"
+}
+awk -v fine="$(triangles 0.5)" -v coarse="$(triangles 8)" 'BEGIN { exit !(fine > 1.3 * coarse && coarse > 0) }' || fail "-e changes no detail"
+
+# A recorded flight flown again shows the same pictures.
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh --offscreen=160x120 --flight "$SCRATCH/quadmesh-flight.csv" --frames 6 \
+    -F 1666.666667 --output "$SCRATCH/again-%02d.ppm"
+cmp -s "$SCRATCH/quadmesh-03.ppm" "$SCRATCH/again-03.ppm" || fail "the recorded flight leads elsewhere"
+
+# -s: exactly -A, frames skipped rather than delayed; without -s every frame.
+start=$(date +%s%N)
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh --offscreen -v -s -A 1500 -F 1 -p "$SCRATCH/s.csv"
+elapsed=$((($(date +%s%N) - start) / 1000000))
+[ "$elapsed" -ge 1500 ] || fail "-s took $elapsed ms of 1500"
+[ "$(wc -l <"$SCRATCH/s.csv")" -lt 1500 ] || fail "-s skipped no frame of a millisecond"
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh --offscreen=32x32 -v -A 100 -F 10 -p "$SCRATCH/every.csv"
+[ "$(wc -l <"$SCRATCH/every.csv")" = 11 ] || fail "without -s not every frame was drawn"
+
+# Fields that an algorithm lacks are named, and the program goes on.
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a roam -g 33 --offscreen
+grep -q -e '-g has no effect on roam' "$SCRATCH/err" || fail "-g with roam is not mentioned"
+
+# A scene file.
+cat >"$SCRATCH/scene.iv" <<'SCENE'
+#Inventor V2.1 ascii
+Separator {
+    SoHeightMap { filename "map.raw" spacing 0.0154 0.0154 heightScale 0.0008 }
+    SoROAMTerrain { pixelError 1 }
+}
+SCENE
+expect 0 "$TEST" --scene "$SCRATCH/scene.iv" --offscreen=160x120 --output "$SCRATCH/scene.ppm" --stats
+[ "$(colors "$SCRATCH/scene.ppm")" -gt 20 ] || fail "the scene file shows nothing"
+grep -q '"SoROAMTerrain"' "$SCRATCH/out" || fail "the scene's terrain is not the one that is measured"
+
+# PNG where this build can write it.
+if expect 0 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh --offscreen --output "$SCRATCH/p.png" && [ -s "$SCRATCH/p.png" ]; then
+    [ "$(head -c 4 "$SCRATCH/p.png" | tail -c 3)" = PNG ] || fail "p.png is no PNG"
+fi
+finish

@@ -1,0 +1,107 @@
+#!/bin/bash
+# The window: it opens, flies, obeys its keys and ends; a profile can be taken in it.
+. "$(dirname "$0")/common.sh"
+for tool in Xvfb xdotool xwd; do command -v $tool >/dev/null || skip "$tool is missing"; done
+make_raw "$SCRATCH/map.raw"
+unset WAYLAND_DISPLAY QT_QPA_PLATFORM EGL_PLATFORM
+export XDG_RUNTIME_DIR=$SCRATCH
+
+Xvfb -displayfd 3 -screen 0 1100x800x24 -nolisten tcp 3>"$SCRATCH/display" >/dev/null 2>&1 &
+server=$!
+trap 'kill $server 2>/dev/null; wait $server 2>/dev/null; rm -rf "$SCRATCH"' EXIT
+for _ in $(seq 100); do [ -s "$SCRATCH/display" ] && break; sleep 0.1; done
+[ -s "$SCRATCH/display" ] || skip "Xvfb does not start"
+DISPLAY=:$(cat "$SCRATCH/display")
+export DISPLAY
+
+"$TEST" -h "$SCRATCH/map.raw" -a quadmesh >"$SCRATCH/out" 2>"$SCRATCH/err" &
+program=$!
+for _ in $(seq 100); do
+    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: .*triangles' 2>/dev/null | tail -1)
+    [ -n "$window" ] && break
+    kill -0 $program 2>/dev/null || break
+    sleep 0.1
+done
+if [ -z "$window" ]; then
+    grep -q 'without SoQt' "$SCRATCH/err" && skip "this build has no SoQt"
+    cat "$SCRATCH/err"
+    fail "no window with a status line"
+    finish
+fi
+
+shot() {
+    sleep 1
+    xwd -silent -root -out "$SCRATCH/$1.xwd"
+}
+# moved A B: the two screens differ by more than the status line
+moved() {
+    [ "$(cmp -l "$SCRATCH/$1.xwd" "$SCRATCH/$2.xwd" | wc -l)" -gt 20000 ]
+}
+press() {
+    xdotool keydown "$1"
+    sleep 0.5
+    xdotool keyup "$1"
+}
+
+xdotool windowfocus "$window" mousemove 500 400
+sleep 1
+shot home
+[ "$(od -An -v -t u1 -w4 -j 4096 "$SCRATCH/home.xwd" | sort -u | wc -l)" -gt 50 ] || fail "the window shows no terrain"
+last=home
+for key in w s a d q e Left Right Up Down Prior Next l; do
+    press $key
+    shot "$key"
+    moved "$last" "$key" || fail "key $key changes nothing"
+    last=$key
+done
+press l
+press Tab
+shot back
+moved home back && fail "Tab does not lead home"
+xdotool mousedown 1 mousemove 600 400 mouseup 1
+shot looked
+moved back looked || fail "the mouse does not look around"
+title() { xdotool getwindowname "$window"; }
+press space
+sleep 0.6
+title | grep -q 'constant height' || fail "Space keeps no height"
+xdotool keydown alt key Return keyup alt
+sleep 1
+xdotool getwindowgeometry "$window" | grep -q 1100x800 || fail "Alt+Enter gives no full screen"
+kill -0 $program 2>/dev/null || fail "the program ended by itself"
+xdotool key Escape
+for _ in $(seq 50); do kill -0 $program 2>/dev/null || break; sleep 0.1; done
+kill -0 $program 2>/dev/null && { fail "Esc does not quit"; kill $program; }
+status=0
+wait $program || status=$?
+[ $status = 0 ] || fail "exit status $status after Esc"
+
+# Keys that change a terrain node are seen in its title.
+"$TEST" -h "$SCRATCH/map.raw" -a roam -e 2 >/dev/null 2>"$SCRATCH/err" &
+program=$!
+for _ in $(seq 100); do
+    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: roam .*px' 2>/dev/null | tail -1)
+    [ -n "$window" ] && break
+    sleep 0.1
+done
+xdotool windowfocus "$window" mousemove 500 400
+sleep 0.5
+title | grep -q 'no culling' || fail "culling is on without -c"
+xdotool key f && sleep 0.6
+title | grep -q 'no culling' && fail "F does not switch culling"
+xdotool key KP_Add && sleep 0.6
+title | grep -q 'of 2.50 px' || fail "keypad + does not raise the pixel error: $(title)"
+xdotool key KP_Subtract && sleep 0.6
+title | grep -q 'of 2.00 px' || fail "keypad - does not lower the pixel error: $(title)"
+xdotool key Return && sleep 0.6
+title | grep -q 'full detail' || fail "Enter does not show full detail"
+xdotool key Return && sleep 0.6
+title | grep -q 'of 2.00 px' || fail "Enter does not go back: $(title)"
+xdotool key Escape
+wait $program || fail "exit status $? of roam"
+
+# An animation that is profiled ends by itself.
+expect 0 timeout 60 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh -v -s -A 1000 -F 100 -p "$SCRATCH/p.csv"
+rows=$(wc -l <"$SCRATCH/p.csv")
+[ "$rows" -ge 3 ] && [ "$rows" -le 11 ] || fail "the profile of a second in the window has $rows lines"
+finish
