@@ -1,7 +1,7 @@
 #!/bin/bash
 # The window: it opens, flies, obeys its keys and ends; a profile can be taken in it.
 . "$(dirname "$0")/common.sh"
-for tool in Xvfb xdotool xwd; do command -v $tool >/dev/null || skip "$tool is missing"; done
+for tool in Xvfb xdotool import; do command -v $tool >/dev/null || skip "$tool is missing"; done
 make_raw "$SCRATCH/map.raw"
 unset WAYLAND_DISPLAY QT_QPA_PLATFORM EGL_PLATFORM
 export XDG_RUNTIME_DIR=$SCRATCH
@@ -31,11 +31,11 @@ fi
 
 shot() {
     sleep 1
-    xwd -silent -root -out "$SCRATCH/$1.xwd"
+    import -silent -depth 8 -window root "$SCRATCH/$1.ppm"
 }
 # moved A B: the two screens differ by more than the status line
 moved() {
-    [ "$(cmp -l "$SCRATCH/$1.xwd" "$SCRATCH/$2.xwd" | wc -l)" -gt 20000 ]
+    [ "$(cmp -l "$SCRATCH/$1.ppm" "$SCRATCH/$2.ppm" | wc -l)" -gt 20000 ]
 }
 press() {
     xdotool keydown "$1"
@@ -46,7 +46,7 @@ press() {
 xdotool windowfocus "$window" mousemove 500 400
 sleep 1
 shot home
-[ "$(od -An -v -t u1 -w4 -j 4096 "$SCRATCH/home.xwd" | sort -u | wc -l)" -gt 50 ] || fail "the window shows no terrain"
+[ "$(od -An -v -t u1 -w3 -j 16 "$SCRATCH/home.ppm" | sort -u | wc -l)" -gt 50 ] || fail "the window shows no terrain"
 last=home
 for key in w s a d q e Left Right Up Down Prior Next l; do
     press $key
