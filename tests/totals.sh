@@ -12,6 +12,7 @@ for result in "$1"/**/*.trs; do
         ok=$(grep -c '\[       OK \] .* ms)$' "$log")
         bad=$(grep -c '\[  FAILED  \] .* ms)$' "$log")
         skip=$(grep -c '\[  SKIPPED \] .* ms)$' "$log")
+        grep -q '\[==========\] .* ran\.' "$log" || bad=$((bad + 1))
         if [ "$bad" -eq 0 ] && grep -q '^:test-result: \(FAIL\|ERROR\|XPASS\)' "$result"; then bad=1; fi
     else
         ok=$(grep -c '^:test-result: PASS' "$result")
