@@ -49,8 +49,8 @@
 */
 /*!
   \var SoSFBool SoROAMTerrain::geomorph
-  Whether vertices slide in and out instead of popping. Refinement begins at 0.85 pixelError then, so that the error stays within
-  pixelError while they move, which takes about a quarter more triangles. Default TRUE.
+  Whether vertices slide in and out instead of popping. Refinement begins at 0.9 pixelError then, so that the error stays within
+  pixelError while they move, which takes about a fifth more triangles. Default TRUE.
 */
 /*!
   \var SoSFInt32 SoROAMTerrain::operationCount

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include <glm/mat4x4.hpp>
@@ -30,11 +29,6 @@ enum class ErrorDirection {
     Any        ///< anywhere (curved grids)
 };
 
-/// Planes of the view volume that a box is known to lie inside of, one bit each; `kOutside` when it is outside of one.
-using FrustumLabel = std::uint8_t;
-inline constexpr FrustumLabel kInsideAll = 0x3f;
-inline constexpr FrustumLabel kOutside = 0x80;
-
 /// A view prepared for testing many boxes of one frame of reference (local coordinates, or grid coordinates).
 ///
 /// Screen error. A point P of the box that is in view is drawn displaced by d (vertical: d = e u, u the third axis). With clip rows
@@ -48,12 +42,21 @@ public:
     ScreenSpace(const View& view, const glm::dmat4& localFromFrame, ErrorDirection direction);
 
     /// Bound, in pixels, on the screen error of any point of `box` that is in view, when it is drawn at most `error` units off and
-    /// within the box. 0 for an error of 0. Where a coarser bound is at most `enough` already, that one is returned: what only needs
-    /// to know on which side of a threshold the error lies costs a third then.
-    float screenError(float error, const Box& box, float enough = -1.0f) const;
+    /// within the box. 0 for an error of 0.
+    float screenError(float error, const Box& box) const;
 
-    /// Tests the box against those planes that `known` does not name as inside already.
-    FrustumLabel classify(const Box& box, FrustumLabel known) const;
+    /// The same for errors along the third axis, in a form that a compiler can do for many boxes at once. `error` must not be 0.
+    float verticalScreenError(float error, float x, float y, float z, float halfX, float halfY, float halfZ) const;
+    ErrorDirection direction() const { return direction_; }
+
+    /// Forms that are not negative for points in view: the six planes of the view volume, and w itself.
+    const std::array<glm::vec4, 6>& planes() const { return planes_; }
+    const glm::vec4& depth() const { return w_; }
+    /// Whether nothing of the box is in view, as far as one plane tells.
+    bool isOutside(const Box& box) const;
+
+    /// Pixels that a unit of error takes at most at w = 1, anywhere in the window.
+    float largestFactor() const { return largestFactor_; }
 
 private:
     static float along(const glm::vec4& form, const glm::vec3& p) { return form.x * p.x + form.y * p.y + form.z * p.z + form.w; }
@@ -61,11 +64,10 @@ private:
     {
         return std::fabs(form.x) * half.x + std::fabs(form.y) * half.y + std::fabs(form.z) * half.z;
     }
-    float directionFactor(float lowX, float highX, float lowY, float highY) const;
-    float anyDirectionFactor(float lowX, float highX, float lowY, float highY) const;
+    float anyScreenError(float error, const Box& box) const;
 
     glm::vec4 x_, y_, w_;
-    float largestFactor_ = 0.0f;  ///< directionFactor() over the whole window
+    float largestFactor_ = 0.0f;
     glm::vec2 scale_;  ///< half the viewport, in pixels
     std::array<glm::vec4, 6> planes_;
     ErrorDirection direction_;
@@ -73,42 +75,35 @@ private:
 
 // Defined here because a selection calls them tens of thousands of times a frame.
 
-inline float ScreenSpace::directionFactor(float lowX, float highX, float lowY, float highY) const
+__attribute__((always_inline)) inline float ScreenSpace::verticalScreenError(float error, float x, float y, float z, float halfX,
+                                                                              float halfY, float halfZ) const
 {
-    if (direction_ == ErrorDirection::Any) return anyDirectionFactor(lowX, highX, lowY, highY);
+    const auto reach3 = [&](float fx, float fy, float fz) { return std::fabs(fx) * halfX + std::fabs(fy) * halfY + std::fabs(fz) * halfZ; };
+    const auto larger = [](float a, float b) { return a > b ? a : b; };
+    const auto window = [](float t) { return t < -1.0f ? -1.0f : t > 1.0f ? 1.0f : t; };
+    const float centreW = w_.x * x + w_.y * y + w_.z * z + w_.w, nearestW = centreW - reach3(w_.x, w_.y, w_.z);
+    const float inverse = 1.0f / centreW, inverseNearest = 1.0f / nearestW;
+    const float tx = (x_.x * x + x_.y * y + x_.z * z + x_.w) * inverse, ty = (y_.x * x + y_.y * y + y_.z * z + y_.w) * inverse;
+    const float spreadX = reach3(x_.x - tx * w_.x, x_.y - tx * w_.y, x_.z - tx * w_.z) * inverseNearest;
+    const float spreadY = reach3(y_.x - ty * w_.x, y_.y - ty * w_.y, y_.z - ty * w_.z) * inverseNearest;
     // Both terms are convex in tx and ty, so that the ends of the intervals bound them.
-    const float horizontal = std::max(std::fabs(x_.z - lowX * w_.z), std::fabs(x_.z - highX * w_.z)) * scale_.x;
-    const float vertical = std::max(std::fabs(y_.z - lowY * w_.z), std::fabs(y_.z - highY * w_.z)) * scale_.y;
-    return std::sqrt(horizontal * horizontal + vertical * vertical);
+    const float horizontal = scale_.x * larger(std::fabs(x_.z - window(tx - spreadX) * w_.z), std::fabs(x_.z - window(tx + spreadX) * w_.z));
+    const float vertical = scale_.y * larger(std::fabs(y_.z - window(ty - spreadY) * w_.z), std::fabs(y_.z - window(ty + spreadY) * w_.z));
+    const float pixels = error * std::sqrt(horizontal * horizontal + vertical * vertical) * inverseNearest;
+    return nearestW > 0.0f ? pixels : std::numeric_limits<float>::infinity();
 }
 
-inline float ScreenSpace::screenError(float error, const Box& box, float enough) const
+inline float ScreenSpace::screenError(float error, const Box& box) const
 {
     if (!(error > 0.0f)) return 0.0f;
-    const float centreW = along(w_, box.centre);
-    const float nearestW = centreW - reach(w_, box.half);
-    if (!(nearestW > 0.0f)) return std::numeric_limits<float>::infinity();
-    const float inverseNearest = 1.0f / nearestW, coarse = error * largestFactor_ * inverseNearest;
-    if (coarse <= enough) return coarse;
-    const float inverse = 1.0f / centreW;
-    const float tx = along(x_, box.centre) * inverse, ty = along(y_, box.centre) * inverse;
-    const float spreadX = reach(x_ - tx * w_, box.half) * inverseNearest;
-    const float spreadY = reach(y_ - ty * w_, box.half) * inverseNearest;
-    const auto window = [](float t) { return std::clamp(t, -1.0f, 1.0f); };
-    const float factor = directionFactor(window(tx - spreadX), window(tx + spreadX), window(ty - spreadY), window(ty + spreadY));
-    return error * factor * inverseNearest;
+    if (direction_ == ErrorDirection::Any) return anyScreenError(error, box);
+    return verticalScreenError(error, box.centre.x, box.centre.y, box.centre.z, box.half.x, box.half.y, box.half.z);
 }
 
-inline FrustumLabel ScreenSpace::classify(const Box& box, FrustumLabel known) const
+inline bool ScreenSpace::isOutside(const Box& box) const
 {
-    for (unsigned plane = 0; plane < 6; ++plane) {
-        const FrustumLabel bit = FrustumLabel(1u << plane);
-        if (known & bit) continue;
-        const float distance = along(planes_[plane], box.centre), extent = reach(planes_[plane], box.half);
-        if (distance < -extent) return kOutside;
-        if (distance >= extent) known = FrustumLabel(known | bit);
-    }
-    return known;
+    return std::any_of(planes_.begin(), planes_.end(),
+                       [&box](const glm::vec4& plane) { return along(plane, box.centre) + reach(plane, box.half) < 0.0f; });
 }
 
 }  // namespace terrain

@@ -12,6 +12,12 @@ void GlBuffer::fill(GLenum target, const void* data, std::size_t bytes, GLenum u
     bytes_ = bytes;
 }
 
+void GlBuffer::refill(GLenum target, const void* data, std::size_t bytes)
+{
+    if (name_ == 0 || bytes > bytes_) fill(target, nullptr, bytes + bytes / 4, GL_STREAM_DRAW);
+    update(target, 0, data, bytes);
+}
+
 void GlBuffer::update(GLenum target, std::size_t offset, const void* data, std::size_t bytes)
 {
     glBindBuffer(target, name_);

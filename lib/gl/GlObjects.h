@@ -1,6 +1,7 @@
 // GL buffers as values that know their size.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -14,6 +15,9 @@ class GlBuffer {
 public:
     /// Replaces the contents. Asks for new storage each time, so that the GPU may go on reading the old one.
     void fill(GLenum target, const void* data, std::size_t bytes, GLenum usage);
+    /// Replaces the contents, in the storage that is there if it is large enough: asking for new storage in every frame costs more than
+    /// filling it.
+    void refill(GLenum target, const void* data, std::size_t bytes);
     /// Overwrites a part.
     void update(GLenum target, std::size_t offset, const void* data, std::size_t bytes);
     void bind(GLenum target) const { glBindBuffer(target, name_); }
@@ -25,6 +29,24 @@ public:
 private:
     GLuint name_ = 0;
     std::size_t bytes_ = 0;
+};
+
+/// A buffer that is filled anew in most frames: a ring of three, so that none is overwritten while the GPU may still read it.
+class GlStream {
+public:
+    void fill(GLenum target, const void* data, std::size_t bytes)
+    {
+        current_ = (current_ + 1) % ring_.size();
+        ring_[current_].refill(target, data, bytes);
+    }
+    GlBuffer& current() { return ring_[current_]; }
+    const GlBuffer& current() const { return ring_[current_]; }
+    std::array<GlBuffer, 3>& all() { return ring_; }
+    std::size_t bytes() const { return ring_[0].bytes() + ring_[1].bytes() + ring_[2].bytes(); }
+
+private:
+    std::array<GlBuffer, 3> ring_;
+    std::size_t current_ = 0;
 };
 
 }  // namespace terrain

@@ -18,7 +18,8 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
     // In pieces, so that no second copy of the whole grid is ever in memory.
     constexpr std::size_t kPiece = 1u << 16;
     const std::size_t count = std::size_t(grid.columns()) * std::size_t(grid.rows()), stride = format_.stride();
-    positions_.fill(GL_ARRAY_BUFFER, nullptr, count * sizeof(glm::vec3), GL_STATIC_DRAW);
+    GlBuffer& positions = positions_.current();
+    positions.fill(GL_ARRAY_BUFFER, nullptr, count * sizeof(glm::vec3), GL_STATIC_DRAW);
     if (stride > 0) attributes_.fill(GL_ARRAY_BUFFER, nullptr, count * stride, GL_STATIC_DRAW);
     std::vector<glm::vec3> points;
     std::vector<std::uint8_t> attributes;
@@ -31,7 +32,7 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
             points[i] = grid.position(int(sample % std::size_t(grid.columns())), int(sample / std::size_t(grid.columns())));
             if (stride > 0) source.write(std::uint32_t(sample), attributes.data() + i * stride);
         }
-        positions_.update(GL_ARRAY_BUFFER, first * sizeof(glm::vec3), points.data(), size * sizeof(glm::vec3));
+        positions.update(GL_ARRAY_BUFFER, first * sizeof(glm::vec3), points.data(), size * sizeof(glm::vec3));
         if (stride > 0) attributes_.update(GL_ARRAY_BUFFER, first * stride, attributes.data(), size * stride);
     }
     uploaded_ += count * (sizeof(glm::vec3) + stride);
@@ -40,7 +41,7 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
 void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& source, bool everything)
 {
     if (list.positionsChanged || everything) {
-        positions_.fill(GL_ARRAY_BUFFER, list.positions.data(), list.positions.size_bytes(), GL_STREAM_DRAW);
+        positions_.fill(GL_ARRAY_BUFFER, list.positions.data(), list.positions.size_bytes());
         uploaded_ += list.positions.size_bytes();
     }
     const std::size_t stride = format_.stride();
@@ -50,14 +51,14 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
         for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex) source.write(list.samples[vertex], mirror_.data() + vertex * stride);
     else
         for (const std::uint32_t vertex : list.newVertices) source.write(list.samples[vertex], mirror_.data() + vertex * stride);
-    attributes_.fill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size(), GL_STREAM_DRAW);
+    attributes_.refill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size());
     uploaded_ += mirror_.size();
 }
 
 std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source)
 {
     uploaded_ = 0;
-    const bool everything = !positions_.exists() || format_ != source.format() || version_ != source.version();
+    const bool everything = !positions_.current().exists() || format_ != source.format() || version_ != source.version();
     format_ = source.format();
     version_ = source.version();
     if (!list.wholeGrid)
@@ -65,7 +66,10 @@ std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid
     else if (everything || list.positionsChanged)
         uploadSamples(grid, source);
     if (list.indicesChanged) {
-        indices_.fill(GL_ELEMENT_ARRAY_BUFFER, list.indices.data(), list.indices.size_bytes(), list.wholeGrid ? GL_STATIC_DRAW : GL_STREAM_DRAW);
+        if (list.wholeGrid)
+            indices_.current().fill(GL_ELEMENT_ARRAY_BUFFER, list.indices.data(), list.indices.size_bytes(), GL_STATIC_DRAW);
+        else
+            indices_.fill(GL_ELEMENT_ARRAY_BUFFER, list.indices.data(), list.indices.size_bytes());
         indexCount_ = std::uint32_t(list.indices.size());
         uploaded_ += list.indices.size_bytes();
     }
@@ -78,7 +82,7 @@ void TerrainRenderer::draw() const
 {
     if (indexCount_ == 0) return;
     glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
-    positions_.bind(GL_ARRAY_BUFFER);
+    positions_.current().bind(GL_ARRAY_BUFFER);
     glEnableClientState(GL_VERTEX_ARRAY);
     glVertexPointer(3, GL_FLOAT, sizeof(glm::vec3), nullptr);
     const GLsizei stride = GLsizei(format_.stride());
@@ -100,7 +104,7 @@ void TerrainRenderer::draw() const
         glTexCoordPointer(2, GL_FLOAT, stride, offset(at));
         at += 8;
     }
-    indices_.bind(GL_ELEMENT_ARRAY_BUFFER);
+    indices_.current().bind(GL_ELEMENT_ARRAY_BUFFER);
     glDrawElements(GL_TRIANGLES, GLsizei(indexCount_), GL_UNSIGNED_INT, nullptr);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
@@ -110,8 +114,12 @@ void TerrainRenderer::draw() const
 std::vector<GLuint> TerrainRenderer::release()
 {
     std::vector<GLuint> names;
-    for (GlBuffer* buffer : {&positions_, &attributes_, &indices_})
-        if (const GLuint name = buffer->release()) names.push_back(name);
+    const auto take = [&names](GlBuffer& buffer) {
+        if (const GLuint name = buffer.release()) names.push_back(name);
+    };
+    for (GlBuffer& buffer : positions_.all()) take(buffer);
+    for (GlBuffer& buffer : indices_.all()) take(buffer);
+    take(attributes_);
     indexCount_ = 0;
     return names;
 }

@@ -51,7 +51,8 @@ private:
     void uploadSamples(const SampleGrid& grid, const VertexSource& source);
     void uploadPool(const DrawList& list, const VertexSource& source, bool everything);
 
-    GlBuffer positions_, attributes_, indices_;
+    GlStream positions_, indices_;
+    GlBuffer attributes_;
     VertexFormat format_;
     std::uint64_t version_ = 0;
     std::vector<std::uint8_t> mirror_;  ///< attributes of a pool of vertices

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -111,17 +112,52 @@ float triangleDeviation(const Samples& samples, const DiamondShape& d, int half)
 }
 
 /// Finest diamonds cover no sample but their corners and centre.
-template <class Samples>
-float finestDeviation(const Samples& samples, const DiamondShape& d)
+float finestDeviation(const SampleGrid& grid, const DiamondShape& d)
 {
-    return Samples::length(samples.at(d.centre) - (samples.at(d.corner[0]) + samples.at(d.corner[2])) * 0.5f);
+    const auto [a, b] = std::pair(d.corner[0], d.corner[2]);
+    if (grid.isRegular())
+        return std::fabs(grid.height(d.centre.x, d.centre.y) - (grid.height(a.x, a.y) + grid.height(b.x, b.y)) * 0.5f);
+    return glm::length(grid.position(d.centre.x, d.centre.y) - (grid.position(a.x, a.y) + grid.position(b.x, b.y)) * 0.5f);
+}
+
+enum State : std::uint8_t { Full, Empty, Mixed };
+
+bool overlapsGrid(const SampleGrid& grid, const DiamondShape& d, int half)
+{
+    const glm::ivec2 a = d.corner[half ? 3 : 1], b = d.corner[0], c = d.corner[2];
+    return std::min({a.x, b.x, c.x}) < grid.columns() - 1 && std::min({a.y, b.y, c.y}) < grid.rows() - 1 &&
+           std::max({a.x, b.x, c.x}) > 0 && std::max({a.y, b.y, c.y}) > 0;
+}
+
+bool liesInGrid(const SampleGrid& grid, const DiamondShape& d, int half)
+{
+    const auto contains = [&grid](glm::ivec2 p) { return grid.contains(p.x, p.y); };
+    return contains(d.corner[half ? 3 : 1]) && contains(d.corner[0]) && contains(d.corner[2]);
+}
+
+/// State of a triangle of which each half, next to the sides of the apex, is empty or not.
+State joined(const SampleGrid& grid, const DiamondShape& d, int half, const bool (&empty)[2])
+{
+    if (empty[0] != empty[1]) return Mixed;
+    if (!empty[0]) return Full;
+    // A hole that no corner shows would not be told from solid ground when it is drawn: keep splitting.
+    const auto isHole = [&grid](glm::ivec2 p) { return grid.isHole(p.x, p.y); };
+    return isHole(d.corner[half ? 3 : 1]) || isHole(d.corner[0]) || isHole(d.corner[2]) ? Empty : Mixed;
+}
+
+State finestState(const SampleGrid& grid, const DiamondShape& d, int half)
+{
+    if (!liesInGrid(grid, d, half)) return overlapsGrid(grid, d, half) ? Mixed : Empty;
+    const glm::ivec2 apex = d.corner[half ? 3 : 1];
+    const auto cellIsHole = [&](glm::ivec2 end) {
+        return grid.isHole(apex.x, apex.y) || grid.isHole(end.x, end.y) || grid.isHole(apex.x, end.y) || grid.isHole(end.x, apex.y);
+    };
+    return joined(grid, d, half, {cellIsHole(d.corner[half ? 2 : 0]), cellIsHole(d.corner[half ? 0 : 2])});
 }
 
 /// Whether triangles lie in the grid's valid part. States of both triangles of a diamond are packed into one byte a sample.
 class Coverage {
 public:
-    enum State : std::uint8_t { Full, Empty, Mixed };
-
     explicit Coverage(const SampleGrid& grid) : grid_(grid)
     {
         for (int row = 0; row < grid.rows() && !hasHoles_; ++row)
@@ -131,16 +167,15 @@ public:
 
     bool hasHoles() const { return hasHoles_; }
 
-    /// Children must have been asked for before. `half` is 0 for the triangle at q1, 1 for the one at q3.
+    /// Children must have been asked for before, but for finest ones. `half` is 0 for the triangle at q1, 1 for the one at q3.
     State triangle(const DiamondShape& d, int half)
     {
-        const glm::ivec2 apex = d.corner[half ? 3 : 1];
         State state = Full;
-        if (!contains(apex) || !contains(d.corner[0]) || !contains(d.corner[2]))
-            state = overlapsGrid(apex, d.corner[0], d.corner[2]) ? Mixed : Empty;
+        if (!liesInGrid(grid_, d, half))
+            state = overlapsGrid(grid_, d, half) ? Mixed : Empty;
         else if (hasHoles_)
             state = holes(d, half);
-        if (hasHoles_ && contains(d.centre)) {
+        if (hasHoles_) {
             std::uint8_t& stored = states_[grid_.index(d.centre.x, d.centre.y)];
             stored = std::uint8_t((stored & (half ? 0x0f : 0xf0)) | (half ? state << 4 : state));
         }
@@ -148,39 +183,23 @@ public:
     }
 
 private:
-    bool contains(glm::ivec2 p) const { return grid_.contains(p.x, p.y); }
-    bool overlapsGrid(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) const
-    {
-        return std::min({a.x, b.x, c.x}) < grid_.columns() - 1 && std::min({a.y, b.y, c.y}) < grid_.rows() - 1 &&
-               std::max({a.x, b.x, c.x}) > 0 && std::max({a.y, b.y, c.y}) > 0;
-    }
-    bool isHole(glm::ivec2 p) const { return grid_.isHole(p.x, p.y); }
-    bool cellIsHole(glm::ivec2 a, glm::ivec2 b) const
-    {
-        return isHole(a) || isHole(b) || isHole({a.x, b.y}) || isHole({b.x, a.y});
-    }
-
     State holes(const DiamondShape& d, int half) const
     {
-        const glm::ivec2 apex = d.corner[half ? 3 : 1];
         bool empty[2];
         for (int side = 0; side < 2; ++side) {
-            // Each side of the triangle next to the apex carries one half: a half cell, or a triangle of a child.
-            if (d.isFinest()) {
-                empty[side] = cellIsHole(apex, d.corner[side ? 2 : 0]);
-                continue;
-            }
             const DiamondShape child(d.child((half ? 2 : 0) + side));
             const int childHalf = child.corner[1] == d.centre ? 0 : 1;
-            const int stored = states_[grid_.index(child.centre.x, child.centre.y)];
-            const int state = childHalf ? stored >> 4 : stored & 0x0f;
+            State state;
+            if (child.isFinest()) {
+                state = finestState(grid_, child, childHalf);
+            } else {
+                const int stored = states_[grid_.index(child.centre.x, child.centre.y)];
+                state = State(childHalf ? stored >> 4 : stored & 0x0f);
+            }
             if (state == Mixed) return Mixed;
             empty[side] = state == Empty;
         }
-        if (empty[0] != empty[1]) return Mixed;
-        if (!empty[0]) return Full;
-        // A hole that no corner shows would not be told from solid ground when it is drawn: keep splitting.
-        return isHole(apex) || isHole(d.corner[0]) || isHole(d.corner[2]) ? Empty : Mixed;
+        return joined(grid_, d, half, empty);
     }
 
     const SampleGrid& grid_;
@@ -188,36 +207,37 @@ private:
     std::vector<std::uint8_t> states_;
 };
 
-/// Visits the centres of all diamonds, children before parents, that lie in the grid.
+/// Visits all diamonds whose centres lie in the grid, children before parents, without the finest.
 template <class Visit>
 void forEachDiamondUpwards(int columns, int rows, int side, Visit visit)
 {
     for (int s = 1; s < side; s *= 2) {
-        for (int y = 0; y < rows; y += s)
+        for (int y = 0; y < rows && s > 1; y += s)
             for (int x = (y & s) ? 0 : s; x < columns; x += 2 * s) visit(DiamondShape({x, y}));
         for (int y = s; y < rows; y += 2 * s)
             for (int x = s; x < columns; x += 2 * s) visit(DiamondShape({x, y}));
     }
 }
 
-template <class Samples>
-void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage, int side, std::vector<std::uint16_t>& codes)
+/// Fills `codes`, of which placeOf(centre) is the diamond's.
+template <class Samples, class PlaceOf>
+void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage, int side, std::vector<std::uint16_t>& codes, PlaceOf placeOf)
 {
     forEachDiamondUpwards(grid.columns(), grid.rows(), side, [&](const DiamondShape& d) {
         float deviation = 0.0f;
         for (int half = 0; half < 2; ++half) {
-            const Coverage::State state = coverage.triangle(d, half);
-            if (state == Coverage::Mixed) deviation = kInfinity;
-            if (state == Coverage::Full)
-                deviation = std::max(deviation, d.isFinest() ? finestDeviation(samples, d) : triangleDeviation(samples, d, half));
+            const State state = coverage.triangle(d, half);
+            if (state == Mixed) deviation = kInfinity;
+            if (state == Full) deviation = std::max(deviation, triangleDeviation(samples, d, half));
         }
         std::uint16_t code = ErrorHierarchy::encode(deviation);
-        if (!d.isFinest())
-            for (int side = 0; side < 4; ++side) {
-                const glm::ivec2 child = d.child(side);
-                if (grid.contains(child.x, child.y)) code = std::max(code, codes[grid.index(child.x, child.y)]);
-            }
-        codes[grid.index(d.centre.x, d.centre.y)] = code;
+        // The centres of finest children are among the samples that their parent covers.
+        for (int side = 0; side < 4; ++side) {
+            const glm::ivec2 child = d.child(side);
+            const bool isFinest = d.size == 1;
+            if (!isFinest && grid.contains(child.x, child.y)) code = std::max(code, codes[placeOf(child)]);
+        }
+        codes[placeOf(d.centre)] = code;
     });
 }
 
@@ -231,11 +251,6 @@ std::uint16_t ErrorHierarchy::encode(float error)
     return std::uint16_t((bits + 0x7fffu) >> 15);
 }
 
-float ErrorHierarchy::decode(std::uint16_t code)
-{
-    return std::bit_cast<float>(std::uint32_t(code) << 15);
-}
-
 ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()), rows_(grid.rows())
 {
     const unsigned cells = unsigned(std::max(columns_, rows_) - 1);
@@ -243,20 +258,28 @@ ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()
     Coverage coverage(grid);
     hasHoles_ = coverage.hasHoles();
     whole_ = !hasHoles_ && columns_ == side() + 1 && rows_ == side() + 1;
-    codes_.assign(std::size_t(columns_) * std::size_t(rows_), 0);
+    codes_.assign(std::size_t((columns_ + 1) / 2) * std::size_t(rows_), 0);
+    const auto placeOf = [this](glm::ivec2 centre) { return place(centre); };
     if (grid.isRegular())
-        measure(PackedHeights(grid), grid, coverage, side(), codes_);
+        measure(PackedHeights(grid), grid, coverage, side(), codes_, placeOf);
     else
-        measure(CurvedPoints(grid), grid, coverage, side(), codes_);
+        measure(CurvedPoints(grid), grid, coverage, side(), codes_, placeOf);
 }
 
-float ErrorHierarchy::error(const DiamondShape& d) const
+float ErrorHierarchy::error(const SampleGrid& grid, const DiamondShape& d) const
 {
-    if (d.centre.x < columns_ && d.centre.y < rows_)
-        return decode(codes_[std::size_t(d.centre.y) * std::size_t(columns_) + std::size_t(d.centre.x)]);
-    // Beyond the grid: split as long as any of it may reach in.
-    const int reach = d.size;
-    return d.centre.x - reach < columns_ - 1 && d.centre.y - reach < rows_ - 1 ? kInfinity : 0.0f;
+    if (d.centre.x >= columns_ || d.centre.y >= rows_) {
+        // Beyond the grid: split as long as any of it may reach in.
+        return d.centre.x - d.size < columns_ - 1 && d.centre.y - d.size < rows_ - 1 ? kInfinity : 0.0f;
+    }
+    if (!d.isFinest()) return decode(codes_[place(d.centre)]);
+    bool isFull = whole_;
+    if (!whole_) {
+        const State states[2] = {finestState(grid, d, 0), finestState(grid, d, 1)};
+        if (states[0] == Mixed || states[1] == Mixed) return kInfinity;
+        isFull = states[0] == Full || states[1] == Full;
+    }
+    return isFull ? decode(encode(finestDeviation(grid, d))) : 0.0f;
 }
 
 }  // namespace terrain

@@ -18,13 +18,13 @@ void RoamMesh::put(std::uint32_t a, std::uint32_t b, std::uint32_t c)
 
 void RoamMesh::emitHalfCells(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
 {
-    const Links& d = links_[number];
+    const Links& d = links(number);
     if (d.solidCells == 0xf) {
         put(apex, d.vertex, first);
         put(last, d.vertex, apex);
         return;
     }
-    const DiamondShape shape(diamonds_[number].centre);
+    const DiamondShape shape(bounds_.centre(number));
     const glm::ivec2 toApex = shape.corner[half ? 3 : 1] - shape.centre;
     const auto isSolid = [&](std::size_t end) {
         const glm::ivec2 toCell = toApex + shape.corner[end] - shape.centre;
@@ -36,14 +36,13 @@ void RoamMesh::emitHalfCells(std::uint32_t number, unsigned half, std::uint32_t 
 
 void RoamMesh::emitTriangle(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
 {
-    const Label label = labels_[number];
-    if (label & kOutside) return;
-    if (!(label & kSplit)) {
-        report_.errorPixels = std::max(report_.errorPixels, priorities_[number]);
+    if (bounds_.priority(number) == 0.0f) return;
+    const std::uint32_t place = diamonds_[number].links;
+    if (place == kNone) {
         put(first, apex, last);
         return;
     }
-    const Links& d = links_[number];
+    const Links& d = links_[place];
     const std::uint32_t middle = d.vertex;
     if (d.finest) {
         emitHalfCells(number, half, first, apex, last);
@@ -62,7 +61,9 @@ void RoamMesh::emitTriangle(std::uint32_t number, unsigned half, std::uint32_t f
 
 void RoamMesh::emit()
 {
-    indices_.resize(std::size_t(meshTriangles_) * 3);
+    const std::size_t most = std::size_t(meshTriangles_) * 3;
+    if (most > indices_.capacity()) indices_.reserve(most + most / 8);
+    indices_.resize(most);
     out_ = indices_.data();
     const auto [c0, c1, c2, c3] = corners_;
     if (root_ != kNone) {
@@ -74,6 +75,15 @@ void RoamMesh::emit()
     }
     indices_.resize(std::size_t(out_ - indices_.data()));
     report_.triangles = std::uint32_t(indices_.size() / 3);
+}
+
+void RoamMesh::boundError()
+{
+    // A deferred priority is known only not to exceed the threshold.
+    float worst = 0.0f;
+    for (std::uint32_t number = 0; number < bounds_.size(); ++number)
+        if (!isSplit(number)) worst = std::max(worst, bounds_.priority(number));
+    report_.errorPixels = worst > 0.0f && mayDefer_ ? std::max(worst, request_.threshold) : worst;
 }
 
 void RoamMesh::place(std::uint32_t number)
@@ -89,41 +99,51 @@ void RoamMesh::place(std::uint32_t number)
     positionsChanged_ = true;
 }
 
-void RoamMesh::sortByLevel()
+void RoamMesh::collectMoving(float full)
 {
-    std::array<std::uint32_t, 64> start{};
-    const auto isWanted = [this](std::size_t number) { return (labels_[number] & kSplit) && links_[number].vertex != kNoVertex; };
-    for (std::size_t number = 0; number < labels_.size(); ++number)
-        if (isWanted(number)) ++start[diamonds_[number].level + 1u];
+    moving_.clear();
+    if (!settings_.geomorph) return;
+    std::array<std::uint32_t, 34> start{};
+    const auto levelOf = [this](std::uint32_t number) {
+        return std::size_t(DiamondShape(bounds_.centre(number)).level(model_.errors->exponent()));
+    };
+    splitQueue_.clear();
+    for (std::uint32_t number = 0; number < bounds_.size(); ++number)
+        if (bounds_.priority(number) < full && isSplit(number) && links(number).vertex != kNoVertex) {
+            splitQueue_.push_back({0.0f, number});
+            ++start[levelOf(number) + 1];
+        }
     for (std::size_t level = 1; level < start.size(); ++level) start[level] += start[level - 1];
-    byLevel_.resize(start.back());
-    for (std::size_t number = 0; number < labels_.size(); ++number)
-        if (isWanted(number)) byLevel_[start[diamonds_[number].level]++] = std::uint32_t(number);
+    moving_.resize(splitQueue_.size());
+    for (const Candidate& c : splitQueue_) moving_[start[levelOf(c.diamond)]++] = c.diamond;
 }
 
 void RoamMesh::morph()
 {
-    if (!settings_.geomorph && !morphed_) return;
     // Where a limit stopped refinement, the error that was reached takes the place of the error that was asked for.
     const float full = std::isfinite(report_.errorPixels) ? std::max(settings_.pixelError, report_.errorPixels) : settings_.pixelError;
     const float start = kMorphStart * full;
-    const auto amount = [&](float priority) {
-        return settings_.geomorph && priority < full ? std::max(0.0f, (priority - start) / (full - start)) : 1.0f;
-    };
-    sortByLevel();
-    for (const std::uint32_t number : byLevel_) {
-        const float t = vertices_[links_[number].vertex].morph = amount(priorities_[number]);
+    collectMoving(full);
+    for (const std::uint32_t vertex : moved_) vertices_[vertex].morph = 1.0f;
+    for (const std::uint32_t number : moving_) {
+        vertices_[links(number).vertex].morph = std::max(0.0f, (bounds_.priority(number) - start) / (full - start));
         // What is still on its way shows up to the error of not being split.
-        if (t < 1.0f) report_.errorPixels = std::max(report_.errorPixels, priorities_[number]);
+        report_.errorPixels = std::max(report_.errorPixels, bounds_.priority(number));
     }
-    for (auto number = byLevel_.rbegin(); number != byLevel_.rend(); ++number)
+    for (auto number = moving_.rbegin(); number != moving_.rend(); ++number)
         for (const std::uint32_t parent : diamonds_[*number].parent)
-            if (parent != kNone && links_[parent].vertex != kNoVertex) {
-                float& above = vertices_[links_[parent].vertex].morph;
-                above = std::max(above, vertices_[links_[*number].vertex].morph);
+            if (parent != kNone && links(parent).vertex != kNoVertex) {
+                float& above = vertices_[links(parent).vertex].morph;
+                above = std::max(above, vertices_[links(*number).vertex].morph);
             }
-    for (const std::uint32_t number : byLevel_) place(links_[number].vertex);
-    morphed_ = settings_.geomorph;
+    // What was moving and no longer is comes to rest before what hangs on it moves.
+    for (const std::uint32_t vertex : moved_)
+        if (vertices_[vertex].morph >= 1.0f) place(vertex);
+    moved_.clear();
+    for (const std::uint32_t number : moving_) {
+        place(links(number).vertex);
+        moved_.push_back(links(number).vertex);
+    }
 }
 
 }  // namespace terrain

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include <glm/common.hpp>
-
 namespace terrain {
 
 namespace {
@@ -21,7 +19,7 @@ void grow(std::vector<T>& items)
 
 RoamMesh::RoamMesh(const TerrainModel& model, const SampleGrid& grid)
     : model_(model), side_(model_.errors->side()), whole_(model_.errors->isWhole()),
-      regular_(grid.isRegular()), lastSample_(grid.columns() - 1, grid.rows() - 1)
+      regular_(grid.isRegular()), bounds_(grid.isRegular(), model_.boxes->all())
 {
     const int n = model_.errors->exponent();
     const glm::ivec2 corner[4] = {{0, 0}, {side_, 0}, {side_, side_}, {0, side_}};
@@ -29,21 +27,21 @@ RoamMesh::RoamMesh(const TerrainModel& model, const SampleGrid& grid)
     // A single cell has no diamond at all.
     if (n == 0) return;
     const DiamondShape shape(glm::ivec2(side_ / 2));
-    if (model_.errors->error(shape) > 0.0f) root_ = create(grid, shape);
+    if (model_.errors->error(grid, shape) > 0.0f) root_ = create(grid, shape);
 }
 
 std::uint32_t RoamMesh::addVertex(const SampleGrid& grid, glm::ivec2 at)
 {
     if (!grid.contains(at.x, at.y) || grid.isHole(at.x, at.y)) return kNoVertex;
     std::uint32_t vertex;
-    if (freeVertices_.empty()) {
+    if (freeVertex_ == kNone) {
         vertex = std::uint32_t(positions_.size());
         grow(positions_);
         grow(vertices_);
         grow(samples_);
     } else {
-        vertex = freeVertices_.back();
-        freeVertices_.pop_back();
+        vertex = freeVertex_;
+        freeVertex_ = vertices_[vertex].edge[0];
     }
     vertices_[vertex] = Vertex{};
     positions_[vertex] = vertices_[vertex].target = grid.position(at.x, at.y);
@@ -54,7 +52,7 @@ std::uint32_t RoamMesh::addVertex(const SampleGrid& grid, glm::ivec2 at)
 
 std::uint32_t RoamMesh::find(glm::ivec2 centre) const
 {
-    return table_.find(centre, [this](std::uint32_t number) { return diamonds_[number].centre; });
+    return table_.find(centre, [this](std::uint32_t number) { return bounds_.centre(number); });
 }
 
 std::uint32_t RoamMesh::vertexAt(glm::ivec2 at) const
@@ -62,63 +60,39 @@ std::uint32_t RoamMesh::vertexAt(glm::ivec2 at) const
     const bool right = at.x == side_, top = at.y == side_;
     if ((right || at.x == 0) && (top || at.y == 0)) return corners_[top ? (right ? 2 : 3) : (right ? 1 : 0)];
     const std::uint32_t number = find(at);
-    return number == kNone ? kNoVertex : links_[number].vertex;
+    return number == kNone || !isSplit(number) ? kNoVertex : links(number).vertex;
 }
 
 void RoamMesh::bound(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number)
 {
-    // Small diamonds are worth exact bounds: the pyramid's blocks are larger than they are.
     const glm::ivec2 low = shape.centre - shape.size, high = shape.centre + shape.size;
-    const BoxPyramid::Bounds bounds = shape.size <= 2 ? BoxPyramid::exactBounds(grid, low.x, low.y, high.x, high.y)
-                                                      : model_.boxes->bounds(low.x, low.y, high.x, high.y);
-    Diamond& d = diamonds_[number];
-    d.nowhere = bounds.isEmpty();
-    if (d.nowhere) return;
-    d.lowest = bounds.low.z;
-    d.highest = bounds.high.z;
-    if (!regular_) boxes_[number] = boxOf(bounds);
-}
-
-Box RoamMesh::boxOfDiamond(std::uint32_t number) const
-{
-    if (!regular_) return boxes_[number];
-    const Diamond& d = diamonds_[number];
-    const int size = int(1u << std::countr_zero(std::uint32_t(d.centre.x | d.centre.y)));
-    const glm::ivec2 low = glm::max(d.centre - size, glm::ivec2(0)), high = glm::min(d.centre + size, lastSample_);
-    return boxBetween({float(low.x), float(low.y), d.lowest}, {float(high.x), float(high.y), d.highest});
+    // In space the pyramid's blocks would be far too wide for the smallest diamonds.
+    const BoxPyramid::Bounds bounds = !regular_ && shape.size <= 2 ? BoxPyramid::exactBounds(grid, low.x, low.y, high.x, high.y)
+                                                                   : model_.boxes->bounds(low.x, low.y, high.x, high.y);
+    bounds_.set(number, shape.centre, shape.size, bounds, model_.errors->error(grid, shape));
 }
 
 std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape)
 {
     std::uint32_t number;
-    if (freeDiamonds_.empty()) {
-        number = std::uint32_t(diamonds_.size());
+    if (freeCount_ == 0) {
+        number = std::uint32_t(bounds_.append());
         grow(diamonds_);
-        grow(links_);
-        grow(labels_);
-        grow(priorities_);
-        if (!regular_) grow(boxes_);
+        due_.resize(bounds_.blocks(), std::uint16_t(frame_ + 1));
+        freeDiamonds_.resize(number / 64 + 1);
     } else {
-        number = freeDiamonds_.back();
-        freeDiamonds_.pop_back();
+        // The lowest first keeps what is in use together.
+        while (freeDiamonds_[freeWord_] == 0) ++freeWord_;
+        const unsigned bit = unsigned(std::countr_zero(freeDiamonds_[freeWord_]));
+        freeDiamonds_[freeWord_] &= freeDiamonds_[freeWord_] - 1;
+        --freeCount_;
+        number = std::uint32_t(freeWord_ * 64 + bit);
     }
-    Diamond& d = diamonds_[number];
-    Links& links = links_[number];
-    d = Diamond{};
-    links = Links{.serial = links.serial};
-    labels_[number] = Label(kAlive | parity_);
-    priorities_[number] = 0.0f;
-    d.centre = shape.centre;
-    d.level = std::uint8_t(shape.level(model_.errors->exponent()));
-    d.error = model_.errors->error(shape);
-    links.finest = shape.isFinest();
-    for (const std::size_t apex : {1u, 3u})
-        if (d.level > 0 && inSquare(shape.corner[apex])) ++d.parentCount;
+    diamonds_[number] = Diamond{};
     bound(grid, shape, number);
-    table_.insert(number, [this](std::uint32_t other) { return diamonds_[other].centre; });
+    table_.insert(number, [this](std::uint32_t other) { return bounds_.centre(other); });
     // Before the first selection there is no view; that selection evaluates what is there.
     if (space_) {
-        label(number);
         evaluate(number);
         enqueue(number);
     }
@@ -127,10 +101,11 @@ std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape
 
 void RoamMesh::destroy(std::uint32_t number)
 {
-    table_.erase(number, [this](std::uint32_t other) { return diamonds_[other].centre; });
-    ++links_[number].serial;
-    labels_[number] = 0;
-    freeDiamonds_.push_back(number);
+    table_.erase(number, [this](std::uint32_t other) { return bounds_.centre(other); });
+    bounds_.clear(number);
+    freeDiamonds_[number / 64] |= std::uint64_t(1) << (number % 64);
+    freeWord_ = std::min(freeWord_, std::size_t(number / 64));
+    ++freeCount_;
 }
 
 std::uint8_t RoamMesh::findSolidCells(const SampleGrid& grid, glm::ivec2 centre) const
@@ -147,27 +122,35 @@ std::uint8_t RoamMesh::findSolidCells(const SampleGrid& grid, glm::ivec2 centre)
 
 void RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
 {
-    const DiamondShape shape(diamonds_[number].centre);
-    const bool isRoot = diamonds_[number].level == 0;
+    const DiamondShape shape(bounds_.centre(number));
     // Both triangles must be there: a parent that is not split yet is split first, and its parents before it (ROAM's forced split).
-    for (std::size_t half = 0; half < 2 && !isRoot; ++half) {
+    for (std::size_t half = 0; half < 2 && number != root_; ++half) {
         const glm::ivec2 apex = shape.corner[half ? 3 : 1];
         if (diamonds_[number].parent[half] != kNone || !inSquare(apex)) continue;
         std::uint32_t parent = find(apex);
         if (parent == kNone) parent = create(grid, DiamondShape(apex));
         split(grid, parent);
     }
-    Links& links = links_[number];
-    labels_[number] |= kSplit;
-    links.vertex = addVertex(grid, shape.centre);
-    if (links.vertex != kNoVertex) vertices_[links.vertex].edge = {vertexAt(shape.corner[0]), vertexAt(shape.corner[2])};
-    if (links.finest && !whole_) links.solidCells = findSolidCells(grid, shape.centre);
+    if (freeLinks_ == kNone) {
+        diamonds_[number].links = std::uint32_t(links_.size());
+        grow(links_);
+    } else {
+        diamonds_[number].links = freeLinks_;
+        freeLinks_ = links_[freeLinks_].child[0];
+    }
+    Links& l = links(number);
+    l = Links{};
+    l.finest = shape.isFinest();
+    l.atRim = number != root_ && isAtRim(shape);
+    l.vertex = addVertex(grid, shape.centre);
+    if (l.vertex != kNoVertex) vertices_[l.vertex].edge = {vertexAt(shape.corner[0]), vertexAt(shape.corner[2])};
+    if (l.finest && !whole_) l.solidCells = findSolidCells(grid, shape.centre);
     for (const std::uint32_t parent : diamonds_[number].parent)
-        if (parent != kNone) ++diamonds_[parent].splitChildren;
-    meshTriangles_ += splitTriangles(diamonds_[number]);
+        if (parent != kNone) ++links(parent).splitChildren;
+    meshTriangles_ += l.atRim ? 1 : 2;
     ++report_.splits;
     ++operations_;
-    if (!links.finest) adoptChildren(grid, number, shape);
+    if (!shape.isFinest()) adoptChildren(grid, number, shape);
 }
 
 void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape)
@@ -179,43 +162,43 @@ void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const
         const DiamondShape childShape(centre);
         std::uint32_t child = find(centre);
         if (child == kNone) {
-            if (!(model_.errors->error(childShape) > 0.0f)) continue;
+            if (!(model_.errors->error(grid, childShape) > 0.0f)) continue;
             child = create(grid, childShape);
         }
         const unsigned half = childShape.corner[1] == shape.centre ? 0 : 1;
-        links_[number].child[std::size_t(side)] = 2 * child + half;
+        links(number).child[std::size_t(side)] = 2 * child + half;
         diamonds_[child].parent[half] = number;
     }
 }
 
 void RoamMesh::merge(std::uint32_t number)
 {
-    Links& links = links_[number];
-    for (std::uint32_t& link : links.child) {
+    for (const std::uint32_t link : links(number).child) {
         if (link == kNone) continue;
         Diamond& child = diamonds_[link / 2];
         child.parent[link % 2] = kNone;
         if (child.parent[0] == kNone && child.parent[1] == kNone) destroy(link / 2);
-        link = kNone;
     }
     for (const std::uint32_t parent : diamonds_[number].parent)
-        if (parent != kNone) --diamonds_[parent].splitChildren;
-    if (links.vertex != kNoVertex) freeVertices_.push_back(links.vertex);
-    links.vertex = kNoVertex;
-    labels_[number] = Label(labels_[number] & ~kSplit);
-    meshTriangles_ -= splitTriangles(diamonds_[number]);
+        if (parent != kNone) --links(parent).splitChildren;
+    if (const std::uint32_t vertex = links(number).vertex; vertex != kNoVertex) {
+        vertices_[vertex].edge[0] = freeVertex_;
+        freeVertex_ = vertex;
+    }
+    meshTriangles_ -= links(number).atRim ? 1 : 2;
+    links(number).child[0] = freeLinks_;
+    freeLinks_ = diamonds_[number].links;
+    diamonds_[number].links = kNone;
     ++report_.merges;
     ++operations_;
 }
 
 std::size_t RoamMesh::bytes() const
 {
-    std::size_t total = diamonds_.capacity() * (sizeof(Diamond) + sizeof(Links) + sizeof(Label) + sizeof(float)) + table_.bytes();
-    total += positions_.capacity() * sizeof(glm::vec3) + vertices_.capacity() * sizeof(Vertex) + boxes_.capacity() * sizeof(Box);
-    total += (samples_.capacity() + freeVertices_.capacity() + newVertices_.capacity() + indices_.capacity() + freeDiamonds_.capacity() + byLevel_.capacity()) *
-             sizeof(std::uint32_t);
-    total += (splitQueue_.capacity() + mergeQueue_.capacity()) * sizeof(Candidate);
-    return total;
+    const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
+    return bounds_.bytes() + held(diamonds_) + held(due_) + held(freeDiamonds_) + held(links_) + table_.bytes() +
+           held(positions_) + held(vertices_) + held(samples_) + held(newVertices_) + held(indices_) +
+           held(splitQueue_) + held(mergeQueue_) + held(moving_) + held(moved_);
 }
 
 }  // namespace terrain

@@ -12,14 +12,16 @@
 #include "height/SampleGrid.h"
 #include "lod/DiamondTable.h"
 #include "lod/LodAlgorithm.h"
+#include "lod/RoamBounds.h"
 #include "lod/TerrainModel.h"
+#include "lod/ViewMotion.h"
 
 namespace terrain {
 
 /// ROAM (Duchaineau, Wolinsky, Sigeti, Miller, Aldrich, Mineev-Weinstein: "ROAMing Terrain: Real-time Optimally Adapting Meshes",
 /// Visualization 1997) over diamonds: a split queue of the diamonds that can be split, a merge queue of the split ones whose children
-/// are not (sect. 4), forced splits for a mesh without cracks (fig. 3), frustum labels inherited from the parents (sect. 6.2), a
-/// triangle budget met by splitting at the top of one queue and merging at the bottom of the other (sect. 5). Priorities are screen
+/// are not (sect. 4), forced splits for a mesh without cracks (fig. 3), frustum labels and priorities that are kept for as long as the
+/// camera's motion can't have changed them (sect. 6.2 and 6.3; ViewMotion.h), a triangle budget met by splitting at the top of one queue and merging at the bottom of the other (sect. 5). Priorities are screen
 /// errors (View.h) of the exact hierarchy (ErrorHierarchy.h) instead of nested wedgies.
 ///
 /// Geomorph. The vertex m of a split diamond with longest edge a-b stands at (a + b) / 2 + t (M - (A + B) / 2): capitals are the true
@@ -31,7 +33,7 @@ namespace terrain {
 /// The mesh keeps no pointer to samples: select() is given them.
 class RoamMesh : public LodAlgorithm {
 public:
-    static constexpr float kMorphStart = 0.85f;
+    static constexpr float kMorphStart = 0.9f;
 
     RoamMesh(const TerrainModel& model, const SampleGrid& grid);
 
@@ -42,62 +44,52 @@ public:
     /// Triangles of the whole mesh, those outside of the view included.
     std::uint32_t meshTriangles() const { return meshTriangles_; }
     std::size_t bytes() const override;
-    std::size_t diamondCount() const { return diamonds_.size() - freeDiamonds_.size(); }
+    std::size_t diamondCount() const { return diamonds_.size() - freeCount_; }
 
 private:
     static constexpr std::uint32_t kNone = DiamondTable::kNone;
 
-    /// A diamond that is split or could be: at least one of its parents is split. What every frame reads of all of them stands here,
-    /// what it reads of the split ones only in Links, the rest of its state in arrays of its own: a frame's time goes into memory.
+    /// A diamond that is split or could be: at least one of its parents is split. There are two for each triangle, and a frame's time goes
+    /// into memory: what every frame reads of all of them is in RoamBounds, and what only split ones have in Links.
     struct Diamond {
-        glm::ivec2 centre{0, 0};
         std::array<std::uint32_t, 2> parent{kNone, kNone};  ///< those that are split, at q1 and q3
-        float lowest = 0.0f;  ///< of all samples it covers; regular grids only, others have boxes_
-        float highest = 0.0f;
-        float error = 0.0f;
-        std::uint8_t level = 0;
-        std::uint8_t splitChildren = 0;
-        std::uint8_t parentCount = 0;  ///< in the square: 1 at its rim, 0 for the root
-        bool nowhere = false;          ///< covers no valid sample
+        std::uint32_t links = kNone;                        ///< place in links_; none while not split
     };
 
+    /// What a split diamond has beside.
     struct Links {
         std::array<std::uint32_t, 4> child{kNone, kNone, kNone, kNone};  ///< by side: 2 * number + half; none where flat (error 0)
         std::uint32_t vertex = kNoVertex;
-        std::uint16_t serial = 0;  ///< tells a new diamond from a dead one that had the same number
+        std::uint8_t splitChildren = 0;
+        bool atRim = false;             ///< has one triangle only
         bool finest = false;
         std::uint8_t solidCells = 0xf;  ///< finest: bit per cell around the centre, see cellBit()
     };
 
-    /// A FrustumLabel and, above it, whether the diamond is split, whether it is in use, and the parity of the frame that labelled it.
-    using Label = std::uint16_t;
-    static constexpr Label kSplit = 0x100;
-    static constexpr Label kAlive = 0x200;
-    static constexpr Label kParity = 0x400;
-
-    /// The vertex of a split diamond.
     struct Vertex {
-        glm::vec3 target{0.0f};                              ///< true position
-        float morph = 1.0f;                                  ///< t
+        glm::vec3 target{0.0f};                                   ///< true position
+        float morph = 1.0f;                                       ///< t
         std::array<std::uint32_t, 2> edge{kNoVertex, kNoVertex};  ///< vertices q0 and q2
     };
 
-    /// Entry of a priority queue; stale once the diamond changed.
+    /// Entry of a priority queue; stale once the diamond's priority is another.
     struct Candidate {
         float priority;
         std::uint32_t diamond;
-        std::uint16_t serial;
     };
 
     // RoamMesh.cpp: the structure
-    Box boxOfDiamond(std::uint32_t number) const;
-    void bound(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number);
     std::uint32_t create(const SampleGrid& grid, const DiamondShape& shape);
     void destroy(std::uint32_t number);
+    void bound(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number);
     void split(const SampleGrid& grid, std::uint32_t number);
     void adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape);
     void merge(std::uint32_t number);
-    std::uint32_t splitTriangles(const Diamond& diamond) const { return diamond.parentCount == 2 || diamond.level == 0 ? 2 : 1; }
+    bool isSplit(std::uint32_t number) const { return diamonds_[number].links != kNone; }
+    Links& links(std::uint32_t number) { return links_[diamonds_[number].links]; }
+    const Links& links(std::uint32_t number) const { return links_[diamonds_[number].links]; }
+    /// At the rim of the square a diamond has one triangle, elsewhere two; splitting it adds as many.
+    bool isAtRim(const DiamondShape& shape) const { return !inSquare(shape.corner[1]) || !inSquare(shape.corner[3]); }
     std::uint32_t addVertex(const SampleGrid& grid, glm::ivec2 at);
     std::uint32_t find(glm::ivec2 centre) const;
     std::uint32_t vertexAt(glm::ivec2 at) const;
@@ -106,42 +98,42 @@ private:
     std::uint8_t findSolidCells(const SampleGrid& grid, glm::ivec2 centre) const;
 
     // RoamRefine.cpp: queues
-    void label(std::uint32_t number);
-    FrustumLabel inheritedLabel(std::uint32_t number);
+    void prepare(const SampleGrid& grid, const View& view, const LodSettings& settings, bool wasDone);
     void evaluate(std::uint32_t number);
+    void gather(std::uint32_t number);
     void update();
     void refine(const SampleGrid& grid, std::uint32_t limit);
     void coarsen(std::uint32_t limit);
     bool makeRoom(const Candidate& candidate);
     void mergeAndQueueParents(std::uint32_t number);
-    bool isAlive(const Candidate& c) const { return links_[c.diamond].serial == c.serial; }
-    bool isSplit(std::uint32_t number) const { return (labels_[number] & kSplit) != 0; }
-    bool isOutside(std::uint32_t number) const { return (labels_[number] & kOutside) != 0; }
     std::uint32_t triangleCost(std::uint32_t number) const;
     void enqueue(std::uint32_t number);
-    bool isMergeable(std::uint32_t number) const { return isSplit(number) && diamonds_[number].splitChildren == 0; }
-    float splitThreshold() const;
+    bool isCurrent(const Candidate& c) const { return bounds_.priority(c.diamond) == c.priority; }
+    bool isMergeable(std::uint32_t number) const { return isSplit(number) && links(number).splitChildren == 0; }
+    float splitThreshold() const { return settings_.geomorph ? settings_.pixelError * kMorphStart : settings_.pixelError; }
 
     // RoamEmit.cpp: triangles and morphs
     void emit();
     void emitTriangle(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
     void emitHalfCells(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
     void put(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+    void boundError();
     void morph();
-    void sortByLevel();
+    void collectMoving(float full);
     void place(std::uint32_t vertex);
 
     TerrainModel model_;
     int side_;
     bool whole_;
     bool regular_;
-    glm::ivec2 lastSample_;  ///< (columns - 1, rows - 1)
+    RoamBounds bounds_;              ///< by the number of a diamond, as the next
     std::vector<Diamond> diamonds_;
+    std::vector<std::uint16_t> due_;  ///< by block of bounds_: frame in which it must be evaluated again, modulo 2^16
+    std::vector<std::uint64_t> freeDiamonds_;  ///< a bit for each that is free
+    std::size_t freeWord_ = 0;                 ///< no word before it has a bit
+    std::size_t freeCount_ = 0;
     std::vector<Links> links_;
-    std::vector<Label> labels_;
-    std::vector<float> priorities_;  ///< bound on the screen error in pixels; 0 outside of the view
-    std::vector<Box> boxes_;         ///< for curved grids
-    std::vector<std::uint32_t> freeDiamonds_;
+    std::uint32_t freeLinks_ = kNone;  ///< first of a list through child[0]
     DiamondTable table_;
     std::uint32_t root_ = kNone;
     std::array<std::uint32_t, 4> corners_{};  ///< vertices at (0, 0), (side, 0), (side, side), (0, side)
@@ -150,7 +142,7 @@ private:
     std::vector<glm::vec3> positions_;  ///< drawn
     std::vector<Vertex> vertices_;
     std::vector<std::uint32_t> samples_;
-    std::vector<std::uint32_t> freeVertices_;
+    std::uint32_t freeVertex_ = kNone;  ///< first of a list through edge[0]
     std::vector<std::uint32_t> newVertices_;
     std::vector<std::uint32_t> indices_;
     std::uint32_t* out_ = nullptr;  ///< where emit() writes the next index
@@ -159,13 +151,16 @@ private:
     View view_;
     LodSettings settings_;
     std::optional<ScreenSpace> space_;  ///< none before the first selection
+    ViewMotion motion_;
+    std::uint16_t frame_ = 0;
+    EvaluationRequest request_;
+    bool mayDefer_ = false;  ///< false: every diamond is evaluated in this frame
     std::vector<Candidate> splitQueue_, mergeQueue_;
     std::uint32_t operations_ = 0;
     SelectionReport report_;
     bool positionsChanged_ = false;
-    Label parity_ = 0;
-    std::vector<std::uint32_t> byLevel_;  ///< split diamonds with a vertex, coarse ones first; while morphing
-    bool morphed_ = false;  ///< some vertex may stand off its target
+    std::vector<std::uint32_t> moving_;  ///< split diamonds with t < 1, coarse ones first
+    std::vector<std::uint32_t> moved_;   ///< vertices that were off their targets in the last frame
 };
 
 }  // namespace terrain

@@ -18,24 +18,21 @@ DrawList RoamMesh::select(const SampleGrid& grid, const View& view, const LodSet
 {
     const bool isFirst = !space_;
     const bool atRest = !isFirst && report_.converged && view == view_ && settings == settings_;
-    const float bound = report_.errorPixels;
-    const std::uint32_t triangles = report_.triangles;
+    SelectionReport last = report_;
     report_ = SelectionReport{};
     positionsChanged_ = false;
+    // The corners are new to whoever draws the first list.
+    if (!isFirst) newVertices_.clear();
+    // A first mesh is all new, later ones but for a few vertices are not.
+    if (newVertices_.capacity() > 4096 && newVertices_.empty()) newVertices_.shrink_to_fit();
     if (atRest) {
-        newVertices_.clear();
-        report_.errorPixels = bound;
-        report_.triangles = triangles;
+        report_.triangles = last.triangles;
+        report_.errorPixels = last.errorPixels;
     } else {
-        // The corners are new to whoever draws the first list.
-        if (!isFirst) newVertices_.clear();
-        view_ = view;
-        settings_ = settings;
-        space_.emplace(view, grid.localFromFrame(), grid.isRegular() ? ErrorDirection::Vertical : ErrorDirection::Any);
-        operations_ = 0;
-        update();
+        prepare(grid, view, settings, last.converged);
         refine(grid, isFirst || settings.operationLimit == 0 ? std::numeric_limits<std::uint32_t>::max() : settings.operationLimit);
         emit();
+        boundError();
         morph();
     }
     DrawList list;
@@ -49,52 +46,49 @@ DrawList RoamMesh::select(const SampleGrid& grid, const View& view, const LodSet
     return list;
 }
 
-float RoamMesh::splitThreshold() const
+void RoamMesh::prepare(const SampleGrid& grid, const View& view, const LodSettings& settings, bool wasDone)
 {
-    return settings_.geomorph ? settings_.pixelError * kMorphStart : settings_.pixelError;
-}
-
-FrustumLabel RoamMesh::inheritedLabel(std::uint32_t number)
-{
-    // A diamond lies within its two parents: what holds of both holds of it.
-    const Diamond& d = diamonds_[number];
-    FrustumLabel inherited = d.parentCount > 0 ? FrustumLabel(0xff) : FrustumLabel(0);
-    int known = 0;
-    for (const std::uint32_t parent : d.parent)
-        if (parent != kNone) {
-            if ((labels_[parent] & kParity) != parity_) label(parent);
-            inherited = FrustumLabel(inherited & labels_[parent]);
-            ++known;
-        }
-    return known < d.parentCount ? FrustumLabel(0) : inherited;
-}
-
-void RoamMesh::label(std::uint32_t number)
-{
-    FrustumLabel found = diamonds_[number].nowhere ? kOutside : kInsideAll;
-    if (found != kOutside && settings_.cull) {
-        found = inheritedLabel(number);
-        if (!(found & kOutside) && found != kInsideAll) found = space_->classify(boxOfDiamond(number), found);
-    }
-    labels_[number] = Label((labels_[number] & (kSplit | kAlive)) | parity_ | found);
+    const bool sameSettings = settings == settings_;
+    view_ = view;
+    settings_ = settings;
+    ++frame_;
+    operations_ = 0;
+    space_.emplace(view, grid.localFromFrame(), grid.isRegular() ? ErrorDirection::Vertical : ErrorDirection::Any);
+    // A budget needs all priorities in order, not only on which side of a threshold they are.
+    mayDefer_ = motion_.advance(view, grid.localFromFrame()) && sameSettings && wasDone && settings.triangleBudget == 0 &&
+                space_->largestFactor() <= request_.assumedFactor;
+    const float assumedFactor = mayDefer_ ? request_.assumedFactor : 1.05f * space_->largestFactor();
+    request_ = {&*space_, &motion_, settings.cull, splitThreshold(), settings.pixelError, assumedFactor};
+    update();
 }
 
 void RoamMesh::evaluate(std::uint32_t number)
 {
-    priorities_[number] = isOutside(number) ? 0.0f : space_->screenError(diamonds_[number].error, boxOfDiamond(number), splitThreshold());
+    bounds_.evaluate(number, request_);
+    due_[number / RoamBounds::kBlock] = std::uint16_t(frame_ + 1);
 }
 
 void RoamMesh::enqueue(std::uint32_t number)
 {
-    const Candidate candidate{priorities_[number], number, links_[number].serial};
+    const Candidate candidate{bounds_.priority(number), number};
     if (!isSplit(number)) {
         if (candidate.priority > splitThreshold()) {
             splitQueue_.push_back(candidate);
             std::push_heap(splitQueue_.begin(), splitQueue_.end(), kHighestFirst);
         }
-    } else if (diamonds_[number].splitChildren == 0 && (settings_.triangleBudget > 0 || candidate.priority <= splitThreshold())) {
+    } else if (isMergeable(number) && (settings_.triangleBudget > 0 || candidate.priority <= splitThreshold())) {
         mergeQueue_.push_back(candidate);
         std::push_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
+    }
+}
+
+void RoamMesh::gather(std::uint32_t number)
+{
+    const float priority = bounds_.priority(number);
+    if (!isSplit(number)) {
+        if (priority > request_.threshold) splitQueue_.push_back({priority, number});
+    } else if ((priority <= request_.threshold || settings_.triangleBudget > 0) && isMergeable(number)) {
+        mergeQueue_.push_back({priority, number});
     }
 }
 
@@ -102,20 +96,11 @@ void RoamMesh::update()
 {
     splitQueue_.clear();
     mergeQueue_.clear();
-    const float threshold = splitThreshold();
-    const bool queueAllMerges = settings_.triangleBudget > 0;
-    // Parents are labelled before their children wherever they stand, so that this runs through memory in order.
-    parity_ ^= kParity;
-    for (std::uint32_t number = 0; number < labels_.size(); ++number) {
-        if (!(labels_[number] & kAlive)) continue;
-        if ((labels_[number] & kParity) != parity_) label(number);
-        evaluate(number);
-        const float priority = priorities_[number];
-        if (!isSplit(number)) {
-            if (priority > threshold) splitQueue_.push_back({priority, number, links_[number].serial});
-        } else if (diamonds_[number].splitChildren == 0 && (queueAllMerges || priority <= threshold)) {
-            mergeQueue_.push_back({priority, number, links_[number].serial});
-        }
+    for (std::size_t block = 0; block < bounds_.blocks(); ++block) {
+        if (mayDefer_ && due_[block] != frame_) continue;
+        due_[block] = std::uint16_t(frame_ + bounds_.evaluateBlock(block, request_));
+        const std::size_t first = block * RoamBounds::kBlock, last = std::min(first + RoamBounds::kBlock, bounds_.size());
+        for (std::size_t number = first; number < last; ++number) gather(std::uint32_t(number));
     }
     std::make_heap(splitQueue_.begin(), splitQueue_.end(), kHighestFirst);
     std::make_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
@@ -123,16 +108,16 @@ void RoamMesh::update()
 
 std::uint32_t RoamMesh::triangleCost(std::uint32_t number) const
 {
+    if (number == root_) return 2;
     const Diamond& d = diamonds_[number];
-    std::uint32_t cost = splitTriangles(d);
-    if (d.level == 0) return cost;
-    const DiamondShape shape(d.centre);
+    const DiamondShape shape(bounds_.centre(number));
+    std::uint32_t cost = isAtRim(shape) ? 1 : 2;
     for (std::size_t half = 0; half < 2; ++half) {
         const glm::ivec2 apex = shape.corner[half ? 3 : 1];
         if (d.parent[half] != kNone || !inSquare(apex)) continue;
         const std::uint32_t parent = find(apex);
         // A parent without a record needs up to two more splits a level above it.
-        cost += parent != kNone ? triangleCost(parent) : std::uint32_t(2 * 2 * d.level);
+        cost += parent != kNone ? triangleCost(parent) : std::uint32_t(4 * shape.level(model_.errors->exponent()));
     }
     return cost;
 }
@@ -142,7 +127,11 @@ void RoamMesh::mergeAndQueueParents(std::uint32_t number)
     const auto parents = diamonds_[number].parent;
     merge(number);
     for (const std::uint32_t parent : parents)
-        if (parent != kNone && isMergeable(parent)) enqueue(parent);
+        if (parent != kNone && isMergeable(parent)) {
+            // Its own evaluation may have been deferred.
+            evaluate(parent);
+            enqueue(parent);
+        }
 }
 
 bool RoamMesh::makeRoom(const Candidate& candidate)
@@ -152,7 +141,7 @@ bool RoamMesh::makeRoom(const Candidate& candidate)
         std::pop_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
         const Candidate lowest = mergeQueue_.back();
         mergeQueue_.pop_back();
-        if (!isAlive(lowest) || !isMergeable(lowest.diamond)) continue;
+        if (!isCurrent(lowest) || !isMergeable(lowest.diamond)) continue;
         // Its own parents must stay.
         const auto& parents = diamonds_[candidate.diamond].parent;
         if (parents[0] == lowest.diamond || parents[1] == lowest.diamond) continue;
@@ -168,13 +157,13 @@ void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit)
         std::pop_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
         const Candidate lowest = mergeQueue_.back();
         mergeQueue_.pop_back();
-        if (isAlive(lowest) && isMergeable(lowest.diamond)) mergeAndQueueParents(lowest.diamond);
+        if (isCurrent(lowest) && isMergeable(lowest.diamond)) mergeAndQueueParents(lowest.diamond);
     }
     // A quarter of the operations is kept for merges, so that a mesh in flight does not only grow.
     const std::uint32_t splitLimit = limit - std::min(limit / 4, std::uint32_t(mergeQueue_.size()));
     while (!splitQueue_.empty()) {
         const Candidate candidate = splitQueue_.front();
-        if (isAlive(candidate) && !isSplit(candidate.diamond)) {
+        if (isCurrent(candidate) && !isSplit(candidate.diamond)) {
             if (operations_ >= splitLimit) {
                 report_.converged = false;
                 break;
@@ -184,7 +173,7 @@ void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit)
         // Making room may have changed the queue, but never its top.
         std::pop_heap(splitQueue_.begin(), splitQueue_.end(), kHighestFirst);
         splitQueue_.pop_back();
-        if (!isAlive(candidate) || isSplit(candidate.diamond)) continue;
+        if (!isCurrent(candidate) || isSplit(candidate.diamond)) continue;
         split(grid, candidate.diamond);
         if (budget > 0) enqueue(candidate.diamond);
     }
@@ -201,7 +190,7 @@ void RoamMesh::coarsen(std::uint32_t limit)
         std::pop_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
         const Candidate lowest = mergeQueue_.back();
         mergeQueue_.pop_back();
-        if (isAlive(lowest) && isMergeable(lowest.diamond)) mergeAndQueueParents(lowest.diamond);
+        if (isCurrent(lowest) && isMergeable(lowest.diamond)) mergeAndQueueParents(lowest.diamond);
     }
 }
 

@@ -1,0 +1,208 @@
+#include "lod/RoamBounds.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "lod/ErrorHierarchy.h"
+
+namespace terrain {
+
+namespace {
+
+/// Less slack than doubling leaves: these arrays are most of what a mesh holds.
+template <class T>
+void growTo(std::vector<T>& items, std::size_t size)
+{
+    if (size > items.capacity()) items.reserve(size + size / 8 + 256);
+    items.resize(size);
+}
+
+// The innermost loops of a selection. They are compiled for wider vectors too, and the processor's kind decides when the program starts;
+// without contraction the results are the same. Sanitizers can't live with functions that are chosen before they are set up.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define SOTERRAIN_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define SOTERRAIN_VECTOR_CLONES
+#endif
+
+constexpr std::size_t kLanes = RoamBounds::kBlock;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Lanes {
+    float x[kLanes], y[kLanes], z[kLanes], halfX[kLanes], halfY[kLanes], halfZ[kLanes];
+};
+
+struct HeightSteps {
+    float base, step;
+};
+
+SOTERRAIN_VECTOR_CLONES
+void loadRegular(const std::uint16_t* column, const std::uint16_t* row, const std::uint16_t* reach, const std::uint16_t* lowest,
+                 const std::uint16_t* highest, const HeightSteps& height, Lanes& lanes)
+{
+    const float base = height.base, half = 0.5f * height.step;
+#pragma omp simd
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        lanes.x[i] = float(int(column[i]));
+        lanes.y[i] = float(int(row[i]));
+        lanes.z[i] = base + float(int(lowest[i]) + int(highest[i])) * half;
+        lanes.halfX[i] = lanes.halfY[i] = float(int(reach[i]));
+        lanes.halfZ[i] = float(int(highest[i]) - int(lowest[i])) * half;
+    }
+}
+
+void loadBox(const Box& box, std::size_t i, Lanes& lanes)
+{
+    lanes.x[i] = box.centre.x;
+    lanes.y[i] = box.centre.y;
+    lanes.z[i] = box.centre.z;
+    lanes.halfX[i] = box.half.x;
+    lanes.halfY[i] = box.half.y;
+    lanes.halfZ[i] = box.half.z;
+}
+
+/// ScreenSpace::screenError() and isOutside() for all lanes, and for how many frames what they say lasts.
+SOTERRAIN_VECTOR_CLONES
+void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRequest& request, float* priority, float* frames)
+{
+    float error[kLanes];
+#pragma omp simd
+    for (std::size_t i = 0; i < kLanes; ++i) error[i] = std::bit_cast<float>(std::uint32_t(code[i]) << 15);
+    const ScreenSpace& space = *request.space;
+    // The largest value of a form over a box is form(centre) + |form| . half; outside by -that where it is negative.
+    float outside[kLanes];
+    for (float& value : outside) value = -kInfinity;
+    if (request.cull)
+        for (const glm::vec4& plane : space.planes()) {
+            const float px = plane.x, py = plane.y, pz = plane.z, pw = plane.w;
+            const float reachX = std::fabs(px), reachY = std::fabs(py), reachZ = std::fabs(pz);
+#pragma omp simd
+            for (std::size_t i = 0; i < kLanes; ++i) {
+                const float largest = px * b.x[i] + py * b.y[i] + pz * b.z[i] + pw + reachX * b.halfX[i] + reachY * b.halfY[i] +
+                                      reachZ * b.halfZ[i];
+                outside[i] = outside[i] > -largest ? outside[i] : -largest;
+            }
+        }
+    if (space.direction() == ErrorDirection::Vertical)
+#pragma omp simd
+        for (std::size_t i = 0; i < kLanes; ++i)
+            priority[i] = space.verticalScreenError(error[i], b.x[i], b.y[i], b.z[i], b.halfX[i], b.halfY[i], b.halfZ[i]);
+    else
+        for (std::size_t i = 0; i < kLanes; ++i)
+            priority[i] = space.screenError(error[i], {{b.x[i], b.y[i], b.z[i]}, {b.halfX[i], b.halfY[i], b.halfZ[i]}});
+
+    const glm::vec4 w = space.depth();
+    const float reachWx = std::fabs(w.x), reachWy = std::fabs(w.y), reachWz = std::fabs(w.z);
+    const glm::vec3 eye = request.motion->eye(), length = request.motion->unitLength();
+    const ViewMotion::Bound planes = request.motion->planes(), depth = request.motion->depth();
+    const float drift = request.motion->drift();
+    const float needed = request.assumedFactor / request.threshold, resting = 0.7f * request.assumedFactor / request.full;
+#pragma omp simd
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const float nearest = w.x * b.x[i] + w.y * b.y[i] + w.z * b.z[i] + w.w - reachWx * b.halfX[i] - reachWy * b.halfY[i] -
+                              reachWz * b.halfZ[i];
+        priority[i] = outside[i] > 0.0f || error[i] == 0.0f ? 0.0f : priority[i];
+        const float distance = (std::fabs(b.x[i] - eye.x) + b.halfX[i]) * length.x + (std::fabs(b.y[i] - eye.y) + b.halfY[i]) * length.y +
+                               (std::fabs(b.z[i] - eye.z) + b.halfZ[i]) * length.z + drift;
+        const float labelFrames = std::fabs(outside[i]) / (planes.shift + planes.turn * distance);
+        // Not yet to be split: until w falls to `needed` error. Split and standing still: until it rises to `resting` error.
+        const float toSplit = nearest - error[i] * needed, toMove = error[i] * resting - nearest;
+        const float margin = toSplit > 0.0f ? toSplit : toMove > 0.0f ? toMove : 0.0f;
+        const float priorityFrames = outside[i] > 0.0f ? kInfinity : margin / (depth.shift + depth.turn * distance);
+        frames[i] = error[i] == 0.0f ? kInfinity : labelFrames < priorityFrames ? labelFrames : priorityFrames;
+    }
+}
+
+}  // namespace
+
+std::size_t RoamBounds::append()
+{
+    if (size_ == error_.size()) {
+        const std::size_t size = size_ + kBlock;
+        growTo(column_, size);
+        growTo(row_, size);
+        growTo(error_, size);
+        growTo(priority_, size);
+        if (regular_) {
+            growTo(reach_, size);
+            growTo(lowest_, size);
+            growTo(highest_, size);
+        } else {
+            growTo(boxes_, size);
+        }
+    }
+    return size_++;
+}
+
+RoamBounds::RoamBounds(bool regular, const BoxPyramid::Bounds& all) : regular_(regular)
+{
+    if (all.isEmpty()) return;
+    heightBase_ = all.low.z;
+    heightStep_ = (all.high.z - all.low.z) / 65535.0f;
+}
+
+void RoamBounds::set(std::size_t number, glm::ivec2 centre, int size, const BoxPyramid::Bounds& bounds, float error)
+{
+    column_[number] = std::uint16_t(centre.x);
+    row_[number] = std::uint16_t(centre.y);
+    // What covers no valid sample is never seen.
+    error_[number] = bounds.isEmpty() ? std::uint16_t(0) : ErrorHierarchy::encode(error);
+    if (!regular_) {
+        boxes_[number] = bounds.isEmpty() ? Box{} : boxOf(bounds);
+        return;
+    }
+    reach_[number] = std::uint16_t(size);
+    lowest_[number] = highest_[number] = 0;
+    if (bounds.isEmpty() || !(heightStep_ > 0.0f)) return;
+    lowest_[number] = std::uint16_t(std::clamp(std::floor((bounds.low.z - heightBase_) / heightStep_), 0.0f, 65535.0f));
+    highest_[number] = std::uint16_t(std::clamp(std::ceil((bounds.high.z - heightBase_) / heightStep_), 0.0f, 65535.0f));
+}
+
+void RoamBounds::clear(std::size_t number)
+{
+    error_[number] = 0;
+    priority_[number] = 0.0f;
+}
+
+Box RoamBounds::box(std::size_t number) const
+{
+    if (!regular_) return boxes_[number];
+    const float reach = float(int(reach_[number]));
+    const float half = 0.5f * heightStep_;
+    return {{float(int(column_[number])), float(int(row_[number])), heightBase_ + float(int(lowest_[number]) + int(highest_[number])) * half},
+            {reach, reach, float(int(highest_[number]) - int(lowest_[number])) * half}};
+}
+
+void RoamBounds::evaluate(std::size_t number, const EvaluationRequest& request)
+{
+    const Box b = box(number);
+    const bool isHidden = error_[number] == 0 || (request.cull && request.space->isOutside(b));
+    priority_[number] = isHidden ? 0.0f : request.space->screenError(ErrorHierarchy::decode(error_[number]), b);
+}
+
+int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& request)
+{
+    const std::size_t first = block * kBlock;
+    Lanes lanes;
+    if (regular_)
+        loadRegular(&column_[first], &row_[first], &reach_[first], &lowest_[first], &highest_[first], {heightBase_, heightStep_}, lanes);
+    else
+        for (std::size_t i = 0; i < kBlock; ++i) loadBox(boxes_[first + i], i, lanes);
+    float frames[kBlock];
+    evaluateLanes(lanes, &error_[first], request, &priority_[first], frames);
+    float soonest = float(ViewMotion::kLongest);
+    for (const float lasting : frames)
+        if (!(lasting >= soonest)) soonest = lasting;
+    // A camera that stood still gives 0 / 0: nothing is known then.
+    return soonest >= 1.0f ? int(soonest) : 1;
+}
+
+std::size_t RoamBounds::bytes() const
+{
+    const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
+    return held(column_) + held(row_) + held(reach_) + held(lowest_) + held(highest_) + held(boxes_) + held(error_) + held(priority_);
+}
+
+}  // namespace terrain

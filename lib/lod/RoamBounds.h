@@ -1,0 +1,71 @@
+// Boxes and errors of many diamonds, laid out for evaluating a block of them at once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "base/Box.h"
+#include "base/View.h"
+#include "lod/BoxPyramid.h"
+#include "lod/ViewMotion.h"
+
+namespace terrain {
+
+/// What a selection asks of every block in a frame.
+struct EvaluationRequest {
+    const ScreenSpace* space = nullptr;
+    const ViewMotion* motion = nullptr;
+    bool cull = true;
+    float threshold = 0.0f;      ///< pixels above which a diamond is to be split
+    float full = 0.0f;           ///< pixels above which it is split and stands still
+    float assumedFactor = 0.0f;  ///< ScreenSpace::largestFactor() will not exceed it while results are kept
+};
+
+/// Structure of arrays, by the number of a diamond: 16 bytes each for a regular grid, whose heights and errors
+/// are rounded outwards to 16 bits. A place that is not in use has an error of 0.
+class RoamBounds {
+public:
+    static constexpr std::size_t kBlock = 16;
+
+    /// `all`: bounds of the whole grid.
+    RoamBounds(bool regular, const BoxPyramid::Bounds& all);
+
+    /// Appends an unused place; the arrays grow in whole blocks.
+    std::size_t append();
+    std::size_t size() const { return size_; }
+    std::size_t blocks() const { return error_.size() / kBlock; }
+
+    /// The samples within `size` of the centre have these bounds, and the diamond this error.
+    void set(std::size_t number, glm::ivec2 centre, int size, const BoxPyramid::Bounds& bounds, float error);
+    /// Priority 0 from now on.
+    void clear(std::size_t number);
+
+    glm::ivec2 centre(std::size_t number) const { return {column_[number], row_[number]}; }
+    /// Bound on the screen error in pixels when last evaluated; 0 outside of the view.
+    float priority(std::size_t number) const { return priority_[number]; }
+
+    /// Priorities of one block. Returns the frames for which they stay on the same side of the request's limits: at least 1, at most
+    /// ViewMotion::kLongest.
+    int evaluateBlock(std::size_t block, const EvaluationRequest& request);
+    /// Priority of one diamond.
+    void evaluate(std::size_t number, const EvaluationRequest& request);
+
+    std::size_t bytes() const;
+
+private:
+    Box box(std::size_t number) const;
+
+    bool regular_;
+    std::size_t size_ = 0;
+    std::vector<std::uint16_t> column_, row_, reach_;
+    std::vector<std::uint16_t> lowest_, highest_;  ///< in steps of heightStep_ above heightBase_
+    std::vector<Box> boxes_;                       ///< curved grids
+    std::vector<std::uint16_t> error_;             ///< ErrorHierarchy::encode()
+    std::vector<float> priority_;
+    float heightBase_ = 0.0f, heightStep_ = 0.0f;
+};
+
+}  // namespace terrain
