@@ -64,6 +64,8 @@ struct MessageHandler {
 namespace {
 
 void CoinEnvironment::SetUp() {
+    // With buffers Coin's own shapes take the texture coordinates of the last unit for the first.
+    setenv("COIN_VBO", "0", 1);
     SoDB::init();
     SoInteraction::init();
     SoTerrain::init();

@@ -1,6 +1,8 @@
 // Terrain scenes for tests, each with our nodes or with Coin's own shape for reference.
 #pragma once
 
+#include "Harness.h"
+
 #include <functional>
 #include <vector>
 
@@ -11,13 +13,12 @@
 
 #include <SoTerrain/SoTerrainShape.h>
 
-#include "Harness.h"
 #include "height/HeightMap.h"
 
 namespace test {
 
-/// What draws a grid: an SoIndexedFaceSet of all its triangles, or one of our nodes.
-enum class Kind { Reference, BruteForce, Roam };
+/// What draws a grid: Coin's SoIndexedFaceSet of all its triangles, Coin's SoQuadMesh, or one of our nodes.
+enum class Kind { Reference, QuadMesh, BruteForce, Roam };
 inline constexpr Kind kOurKinds[] = {Kind::BruteForce, Kind::Roam};
 const char* nameOf(Kind kind);
 
@@ -45,8 +46,8 @@ Surface surfaceOf(const terrain::HeightMap& map, const std::function<SbVec3f(int
 
 struct ShapeOptions {
     float pixelError = 2.0f;
-    bool normals = true;            ///< explicit ones
-    bool textureCoordinates = false;  ///< explicit ones for our nodes; the reference always has them
+    bool normals = true;        ///< explicit ones for our nodes; Coin's shapes always have them
+    int coordinatesOnUnit = -1;  ///< explicit texture coordinates, a quarter turn off, on this texture unit
 };
 
 /// Coordinates, normals and shape under a separator. The shape is its last child.
@@ -71,9 +72,9 @@ void unlitTexture(SoSeparator* group);
 /// Camera, light and shape: what most tests draw.
 Ref<SoSeparator> sceneOf(Kind kind, const Surface& surface, const ShapeOptions& options = {}, const Dressing& dress = {}, SoCamera* camera = nullptr);
 
-/// Draws the scene with Coin's shape and with ours, compares, and saves the pictures under `name`. `roamMean` is for ROAM at the
+/// Draws the scene with Coin's shape (`reference`) and with ours, compares, and saves the pictures under `name`. `roamMean` is for ROAM at the
 /// option's pixelError.
 void expectLikeReference(const std::string& name, const Surface& surface, const ShapeOptions& options, const Dressing& dress,
-                         double bruteForceMean, double roamMean, const std::function<SoCamera*()>& camera = {}, int rim = 2);
+                         double bruteForceMean, double roamMean, const std::function<SoCamera*()>& camera = {}, Kind reference = Kind::Reference);
 
 }  // namespace test
