@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/ProfileScope.h"
+
 #include "Statistics.h"
 
 namespace app {
@@ -94,6 +96,8 @@ std::string FrameStatistics::json(const std::string& algorithm, const std::strin
     }
     out["start_ms"] = {{"load", rounded(loadMs_)}, {"first_frame", rounded(firstFrameMs_)}};
     // File names may hold any bytes; JSON only UTF-8.
+    for (const terrain::ScopeTotal& scope : terrain::profileTotals())
+        out["scopes"][scope.name] = {{"count", scope.count}, {"ms", scope.milliseconds}};
     return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

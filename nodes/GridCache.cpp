@@ -10,6 +10,7 @@
 
 #include <SoTerrain/SoHeightMapElement.h>
 
+#include "base/ProfileScope.h"
 #include "height/HeightSource.h"
 
 using terrain::Error;
@@ -73,6 +74,7 @@ Result<TerrainGrid> GridCache::complete(Entry & entry, bool withErrors)
     constexpr int kLargestSide = (1 << 15) + 1;
     if (std::max(entry.columns, entry.rows) > kLargestSide)
         return Error{"terrain", "at most " + text(kLargestSide) + " samples a row or column", text(entry.columns) + " x " + text(entry.rows)};
+    const terrain::ProfileScope scope("grid: bounds and errors");
     const auto start = std::chrono::steady_clock::now();
     if (!entry.model.boxes) entry.model.boxes = std::make_shared<terrain::BoxPyramid>(entry.grid);
     if (withErrors && !entry.model.errors) entry.model.errors = std::make_shared<terrain::ErrorHierarchy>(entry.grid);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/ProfileScope.h"
+
 namespace terrain {
 
 namespace {
@@ -57,6 +59,7 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
 
 std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source)
 {
+    const ProfileScope scope("renderer: upload");
     uploaded_ = 0;
     const bool everything = !positions_.current().exists() || format_ != source.format() || version_ != source.version();
     format_ = source.format();
@@ -81,6 +84,7 @@ std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid
 void TerrainRenderer::draw() const
 {
     if (indexCount_ == 0) return;
+    const ProfileScope scope("renderer: draw");
     glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
     positions_.current().bind(GL_ARRAY_BUFFER);
     glEnableClientState(GL_VERTEX_ARRAY);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ProfileScope.h"
 #include "lod/RoamMesh.h"
 
 namespace terrain {
@@ -61,6 +62,7 @@ void RoamMesh::emitTriangle(std::uint32_t number, unsigned half, std::uint32_t f
 
 void RoamMesh::emit()
 {
+    const ProfileScope scope("roam: emit triangles");
     const std::size_t most = std::size_t(meshTriangles_) * 3;
     if (most > indices_.capacity()) indices_.reserve(most + most / 8);
     indices_.resize(most);
@@ -120,6 +122,7 @@ void RoamMesh::collectMoving(float full)
 
 void RoamMesh::morph()
 {
+    const ProfileScope scope("roam: morph");
     // Where a limit stopped refinement, the error that was reached takes the place of the error that was asked for.
     const float full = std::isfinite(report_.errorPixels) ? std::max(settings_.pixelError, report_.errorPixels) : settings_.pixelError;
     const float start = kMorphStart * full;

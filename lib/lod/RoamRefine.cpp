@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/ProfileScope.h"
 #include "lod/RoamMesh.h"
 
 namespace terrain {
@@ -94,6 +95,7 @@ void RoamMesh::gather(std::uint32_t number)
 
 void RoamMesh::update()
 {
+    const ProfileScope scope("roam: evaluate");
     splitQueue_.clear();
     mergeQueue_.clear();
     for (std::size_t block = 0; block < bounds_.blocks(); ++block) {
@@ -152,6 +154,7 @@ bool RoamMesh::makeRoom(const Candidate& candidate)
 
 void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit)
 {
+    const ProfileScope scope("roam: split and merge");
     const std::uint32_t budget = settings_.triangleBudget;
     while (budget > 0 && meshTriangles_ > budget && !mergeQueue_.empty()) {
         std::pop_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
