@@ -152,6 +152,16 @@ SbBool SoHeightMap::readInstance(SoInput * in, unsigned short flags)
     return ok;
 }
 
+void SoHeightMap::copyContents(const SoFieldContainer * from, SbBool copyConnections)
+{
+    inherited::copyContents(from, copyConnections);
+    // A copy has the same file and need not read it again.
+    const SoHeightMap * other = static_cast<const SoHeightMap *>(from);
+    pimpl->path = other->pimpl->path;
+    pimpl->source = other->pimpl->source;
+    pimpl->isStale = other->pimpl->isStale;
+}
+
 void SoHeightMap::notify(SoNotList * list)
 {
     pimpl->isStale = true;

@@ -97,7 +97,7 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
     const float reachWx = std::fabs(w.x), reachWy = std::fabs(w.y), reachWz = std::fabs(w.z);
     const glm::vec3 eye = request.motion->eye(), length = request.motion->unitLength();
     const ViewMotion::Bound planes = request.motion->planes(), depth = request.motion->depth();
-    const float drift = request.motion->drift();
+    const float drift = request.motion->drift(), full = request.full;
     const float needed = request.assumedFactor / request.threshold, resting = 0.7f * request.assumedFactor / request.full;
 #pragma omp simd
     for (std::size_t i = 0; i < kLanes; ++i) {
@@ -107,9 +107,10 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
         const float distance = (std::fabs(b.x[i] - eye.x) + b.halfX[i]) * length.x + (std::fabs(b.y[i] - eye.y) + b.halfY[i]) * length.y +
                                (std::fabs(b.z[i] - eye.z) + b.halfZ[i]) * length.z + drift;
         const float labelFrames = std::fabs(outside[i]) / (planes.shift + planes.turn * distance);
-        // Not yet to be split: until w falls to `needed` error. Split and standing still: until it rises to `resting` error.
+        // Not yet to be split: until w falls to `needed` error. Split and standing still: until it rises to `resting` error. In between,
+        // where only the finer bound tells, nothing lasts.
         const float toSplit = nearest - error[i] * needed, toMove = error[i] * resting - nearest;
-        const float margin = toSplit > 0.0f ? toSplit : toMove > 0.0f ? toMove : 0.0f;
+        const float margin = toSplit > 0.0f ? toSplit : toMove > 0.0f && priority[i] > full ? toMove : 0.0f;
         const float priorityFrames = outside[i] > 0.0f ? kInfinity : margin / (depth.shift + depth.turn * distance);
         frames[i] = error[i] == 0.0f ? kInfinity : labelFrames < priorityFrames ? labelFrames : priorityFrames;
     }

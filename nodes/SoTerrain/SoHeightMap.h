@@ -43,6 +43,7 @@ public:
 protected:
     virtual ~SoHeightMap();
     virtual SbBool readInstance(SoInput * in, unsigned short flags);
+    virtual void copyContents(const SoFieldContainer * from, SbBool copyConnections);
     virtual void notify(SoNotList * list);
 
 private:
