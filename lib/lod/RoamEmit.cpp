@@ -17,47 +17,45 @@ void RoamMesh::put(std::uint32_t a, std::uint32_t b, std::uint32_t c)
     out_ += 3;
 }
 
-void RoamMesh::emitHalfCells(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
+void RoamMesh::emitHalfCells(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
 {
-    const Links& d = links(number);
-    if (d.solidCells == 0xf) {
-        put(apex, d.vertex, first);
-        put(last, d.vertex, apex);
+    if (split.solidCells == 0xf) {
+        put(apex, split.vertex, first);
+        put(last, split.vertex, apex);
         return;
     }
-    const DiamondShape shape(bounds_.centre(number));
+    // Without a centre there is no solid cell around it.
+    if (split.vertex == kNoVertex) return;
+    const int sample = int(samples_[split.vertex]);
+    const DiamondShape shape({sample % columns_, sample / columns_});
     const glm::ivec2 toApex = shape.corner[half ? 3 : 1] - shape.centre;
     const auto isSolid = [&](std::size_t end) {
         const glm::ivec2 toCell = toApex + shape.corner[end] - shape.centre;
-        return (d.solidCells >> cellBit(toCell.x, toCell.y) & 1) != 0;
+        return (split.solidCells >> cellBit(toCell.x, toCell.y) & 1) != 0;
     };
-    if (isSolid(half ? 2 : 0)) put(apex, d.vertex, first);
-    if (isSolid(half ? 0 : 2)) put(last, d.vertex, apex);
+    if (isSolid(half ? 2 : 0)) put(apex, split.vertex, first);
+    if (isSolid(half ? 0 : 2)) put(last, split.vertex, apex);
 }
 
-void RoamMesh::emitTriangle(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
+void RoamMesh::emitLink(std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
 {
-    if (bounds_.priority(number) == 0.0f) return;
-    const std::uint32_t place = diamonds_[number].links;
-    if (place == kNone) {
+    if (link == kNone)
         put(first, apex, last);
-        return;
-    }
-    const Links& d = links_[place];
-    const std::uint32_t middle = d.vertex;
-    if (d.finest) {
-        emitHalfCells(number, half, first, apex, last);
+    else if (link & kSplitLink)
+        emitSplit(links_[(link & ~kSplitLink) / 2], link % 2, first, apex, last);
+    else if (bounds_.priority(link / 2) > 0.0f)
+        put(first, apex, last);
+}
+
+void RoamMesh::emitSplit(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
+{
+    if (split.finest) {
+        emitHalfCells(split, half, first, apex, last);
         return;
     }
     // The middle is the apex of both halves.
-    const auto descend = [&](std::uint32_t child, std::uint32_t from, std::uint32_t to) {
-        if (child == kNone)
-            put(from, middle, to);
-        else
-            emitTriangle(child / 2, child % 2, from, middle, to);
-    };
-    descend(d.child[2 * half], apex, first);
-    descend(d.child[2 * half + 1], last, apex);
+    emitLink(split.child[2 * half], apex, split.vertex, first);
+    emitLink(split.child[2 * half + 1], last, split.vertex, apex);
 }
 
 void RoamMesh::emit()
@@ -69,8 +67,11 @@ void RoamMesh::emit()
     out_ = indices_.data();
     const auto [c0, c1, c2, c3] = corners_;
     if (root_ != kNone) {
-        emitTriangle(root_, 0, c2, c3, c0);
-        emitTriangle(root_, 1, c0, c1, c2);
+        const auto link = [this](unsigned half) {
+            return isSplit(root_) ? splitLink(diamonds_[root_].links, half) : leafLink(root_, half);
+        };
+        emitLink(link(0), c2, c3, c0);
+        emitLink(link(1), c0, c1, c2);
     } else if (c0 != kNoVertex && c1 != kNoVertex && c2 != kNoVertex && c3 != kNoVertex) {
         put(c2, c3, c0);
         put(c0, c1, c2);

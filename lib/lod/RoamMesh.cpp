@@ -19,7 +19,7 @@ void grow(std::vector<T>& items)
 
 RoamMesh::RoamMesh(const TerrainModel& model, const SampleGrid& grid)
     : model_(model), side_(model_.errors->side()), whole_(model_.errors->isWhole()),
-      regular_(grid.isRegular()), bounds_(grid.isRegular(), model_.boxes->all())
+      regular_(grid.isRegular()), columns_(grid.columns()), bounds_(grid.isRegular(), model_.boxes->all())
 {
     const int n = model_.errors->exponent();
     const glm::ivec2 corner[4] = {{0, 0}, {side_, 0}, {side_, side_}, {0, side_}};
@@ -120,6 +120,14 @@ std::uint8_t RoamMesh::findSolidCells(const SampleGrid& grid, glm::ivec2 centre)
     return solid;
 }
 
+void RoamMesh::relink(std::uint32_t number, std::uint32_t from, std::uint32_t to)
+{
+    for (unsigned half = 0; half < 2; ++half)
+        if (const std::uint32_t parent = diamonds_[number].parent[half]; parent != kNone)
+            for (std::uint32_t& link : links(parent).child)
+                if (link == from + half) link = to + half;
+}
+
 void RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
 {
     const DiamondShape shape(bounds_.centre(number));
@@ -147,6 +155,7 @@ void RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
     if (l.finest && !whole_) l.solidCells = findSolidCells(grid, shape.centre);
     for (const std::uint32_t parent : diamonds_[number].parent)
         if (parent != kNone) ++links(parent).splitChildren;
+    relink(number, leafLink(number, 0), splitLink(diamonds_[number].links, 0));
     meshTriangles_ += l.atRim ? 1 : 2;
     ++report_.splits;
     ++operations_;
@@ -166,7 +175,7 @@ void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const
             child = create(grid, childShape);
         }
         const unsigned half = childShape.corner[1] == shape.centre ? 0 : 1;
-        links(number).child[std::size_t(side)] = 2 * child + half;
+        links(number).child[std::size_t(side)] = leafLink(child, half);
         diamonds_[child].parent[half] = number;
     }
 }
@@ -181,6 +190,7 @@ void RoamMesh::merge(std::uint32_t number)
     }
     for (const std::uint32_t parent : diamonds_[number].parent)
         if (parent != kNone) --links(parent).splitChildren;
+    relink(number, splitLink(diamonds_[number].links, 0), leafLink(number, 0));
     if (const std::uint32_t vertex = links(number).vertex; vertex != kNoVertex) {
         vertices_[vertex].edge[0] = freeVertex_;
         freeVertex_ = vertex;

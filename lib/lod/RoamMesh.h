@@ -58,13 +58,20 @@ private:
 
     /// What a split diamond has beside.
     struct Links {
-        std::array<std::uint32_t, 4> child{kNone, kNone, kNone, kNone};  ///< by side: 2 * number + half; none where flat (error 0)
+        std::array<std::uint32_t, 4> child{kNone, kNone, kNone, kNone};  ///< by side, see leafLink(); none where flat (error 0)
         std::uint32_t vertex = kNoVertex;
         std::uint8_t splitChildren = 0;
         bool atRim = false;             ///< has one triangle only
         bool finest = false;
         std::uint8_t solidCells = 0xf;  ///< finest: bit per cell around the centre, see cellBit()
     };
+
+    /// A child by its number, with the half of it that lies at the parent; or, once it is split, by its place in links_, so that a walk
+    /// over the triangles reads nothing else.
+    static constexpr std::uint32_t kSplitLink = 0x80000000u;
+    static std::uint32_t leafLink(std::uint32_t number, unsigned half) { return 2 * number + half; }
+    static std::uint32_t splitLink(std::uint32_t place, unsigned half) { return kSplitLink | (2 * place + half); }
+    void relink(std::uint32_t number, std::uint32_t from, std::uint32_t to);
 
     struct Vertex {
         glm::vec3 target{0.0f};                                   ///< true position
@@ -114,8 +121,9 @@ private:
 
     // RoamEmit.cpp: triangles and morphs
     void emit();
-    void emitTriangle(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
-    void emitHalfCells(std::uint32_t number, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
+    void emitLink(std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
+    void emitSplit(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
+    void emitHalfCells(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
     void put(std::uint32_t a, std::uint32_t b, std::uint32_t c);
     void boundError();
     void morph();
@@ -126,6 +134,7 @@ private:
     int side_;
     bool whole_;
     bool regular_;
+    int columns_;
     RoamBounds bounds_;              ///< by the number of a diamond, as the next
     std::vector<Diamond> diamonds_;
     std::vector<std::uint16_t> due_;  ///< by block of bounds_: frame in which it must be evaluated again, modulo 2^16
