@@ -145,7 +145,9 @@ TEST_P(GlState, CountsTheTrianglesThatGlGets) {
     const std::uint32_t counted = generatedPrimitives(stage, root.get());
     EXPECT_EQ(terrainIn(root.get())->getStatistics().triangles, counted);
     EXPECT_GT(counted, 0u);
-    if (GetParam() == Kind::BruteForce) EXPECT_EQ(counted, 64u * 64u * 2u);
+    if (GetParam() == Kind::BruteForce) {
+        EXPECT_EQ(counted, 64u * 64u * 2u);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(, GlState, testing::ValuesIn(kOurKinds),

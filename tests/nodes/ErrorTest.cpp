@@ -1,0 +1,191 @@
+// pixelError is a promise: measured sample by sample against the full-resolution data.
+#include "Scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <Inventor/nodes/SoOrthographicCamera.h>
+#include <Inventor/nodes/SoScale.h>
+
+#include <SoTerrain/SoROAMTerrain.h>
+
+using namespace test;
+
+namespace {
+
+constexpr int kSide = 257;
+
+SbVec3d onScreen(const SbViewVolume& volume, const SbVec3f& point) {
+    SbVec3f normalized;
+    volume.projectToScreen(point, normalized);
+    return SbVec3d(normalized[0], normalized[1], normalized[2]);
+}
+
+SbViewVolume volumeOf(SoCamera* camera) { return camera->getViewVolume(1.0f); }
+
+/// A view straight down in which each pixel's centre is a sample, and depth is height.
+SoCamera* above(float scale, float lowest, float highest) {
+    auto* camera = new SoOrthographicCamera;
+    camera->position = SbVec3f(0.5f * (kSide - 1), 0.5f * (kSide - 1), scale * highest + 2.0f);
+    camera->orientation = SbRotation::identity();
+    camera->height = float(kSide);
+    camera->nearDistance = 1.0f;
+    camera->farDistance = scale * (highest - lowest) + 3.0f;
+    return camera;
+}
+
+struct Measured {
+    double largest = 0.0;
+    int samples = 0;
+    int missing = 0;
+};
+
+/// Freezes the mesh, draws it from above, and takes the heights found there to the screen of the camera that it was chosen for.
+Measured measure(Stage& stage, SoSeparator* root, const Surface& surface, float scale = 1.0f) {
+    SoTerrainShape* node = terrainIn(root);
+    Ref<SoCamera> camera(static_cast<SoCamera*>(root->getChild(0)));
+    const SbBox3f box = surface.box();
+    Ref<SoCamera> down(above(scale, box.getMin()[2], box.getMax()[2]));
+    node->freeze = TRUE;
+    root->replaceChild(0, down.get());
+    stage.clear();
+    stage.draw(root);
+    const std::vector<float> depth = stage.depth();
+    root->replaceChild(0, camera.get());
+    node->freeze = FALSE;
+
+    const SbViewVolume volume = volumeOf(camera.get());
+    Measured measured;
+    for (int row = 1; row < surface.rows - 1; ++row)
+        for (int column = 1; column < surface.columns - 1; ++column) {
+            if (surface.isHole(column, row)) continue;
+            const SbVec3f& p = surface.at(column, row);
+            const SbVec3d there = onScreen(volume, SbVec3f(p[0], p[1], scale * p[2]));
+            if (there[0] < 0.0 || there[0] > 1.0 || there[1] < 0.0 || there[1] > 1.0 || there[2] < 0.0 || there[2] > 1.0) continue;
+            const float d = depth[std::size_t(row) * kSide + std::size_t(column)];
+            if (d >= 1.0f) {
+                ++measured.missing;
+                continue;
+            }
+            const float height = down->position.getValue()[2] - (1.0f + d * (down->farDistance.getValue() - 1.0f));
+            const SbVec3d drawn = onScreen(volume, SbVec3f(p[0], p[1], height));
+            measured.largest = std::max(measured.largest, std::hypot(there[0] - drawn[0], there[1] - drawn[1]) * kSide);
+            ++measured.samples;
+        }
+    return measured;
+}
+
+SoCamera* flight(int frame) {
+    const float angle = 0.35f * float(frame);
+    const SbVec3f eye(128.0f + 80.0f * std::cos(angle), 128.0f + 80.0f * std::sin(angle), 62.0f);
+    return cameraAt(eye, SbVec3f(128.0f, 128.0f, 20.0f), 0.5f, 500.0f);
+}
+
+void expectPromise(Stage& stage, const Ref<SoSeparator>& root, const Surface& surface, double pixelError, float scale = 1.0f) {
+    stage.render(root.get());
+    const SoTerrainStatistics statistics = terrainIn(root.get())->getStatistics();
+    const Measured measured = measure(stage, root.get(), surface, scale);
+    EXPECT_LE(measured.largest, pixelError + 0.1);
+    EXPECT_LE(measured.largest, statistics.errorPixels + 0.1) << "the bound that the node tells";
+    EXPECT_LE(statistics.errorPixels, pixelError);
+    EXPECT_EQ(measured.missing, 0);
+    EXPECT_GT(measured.samples, 1000);
+}
+
+}  // namespace
+
+TEST(PixelError, HoldsForEverySampleInViewOverAFlight) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
+    Stage stage(kSide, kSide);
+    for (const bool morphs : {true, false})
+        for (const float pixels : {1.0f, 2.0f, 6.0f}) {
+            const auto root = sceneOf(Kind::Roam, surface, {.pixelError = pixels}, unlitTexture, flight(0));
+            auto* node = static_cast<SoROAMTerrain*>(terrainIn(root.get()));
+            node->geomorph = morphs;
+            node->operationCount = 0;
+            for (int frame = 0; frame < 8; ++frame) {
+                SCOPED_TRACE("pixelError " + std::to_string(pixels) + ", morphs " + std::to_string(morphs) + ", frame " + std::to_string(frame));
+                root->replaceChild(0, flight(frame));
+                expectPromise(stage, root, surface, pixels);
+            }
+        }
+}
+
+TEST(PixelError, IsUsedNotUndercutByFar) {
+    // A mesh that is much finer than asked for keeps any promise.
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
+    Stage stage(kSide, kSide);
+    const auto root = sceneOf(Kind::Roam, surface, {.pixelError = 4.0f}, unlitTexture, flight(1));
+    stage.render(root.get());
+    EXPECT_GT(measure(stage, root.get(), surface).largest, 1.0);
+}
+
+TEST(PixelError, HoldsUnderAnOrthographicCamera) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
+    Stage stage(kSide, kSide);
+    for (const float slant : {0.2f, 1.0f, 5.0f}) {
+        auto* camera = new SoOrthographicCamera;
+        const SbVec3f centre(128.0f, 128.0f, 20.0f);
+        camera->position = centre + SbVec3f(60.0f, -100.0f, 100.0f * slant);
+        camera->pointAt(centre, SbVec3f(0.0f, 0.0f, 1.0f));
+        camera->height = 150.0f;
+        camera->nearDistance = 1.0f;
+        camera->farDistance = 1000.0f;
+        expectPromise(stage, sceneOf(Kind::Roam, surface, {}, unlitTexture, camera), surface, 2.0);
+    }
+}
+
+TEST(PixelError, HoldsUnderAScale) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
+    Stage stage(kSide, kSide);
+    for (const float scale : {0.25f, 2.0f}) {
+        const auto root = sceneOf(Kind::Roam, surface, {}, [&](SoSeparator* group) {
+            unlitTexture(group);
+            auto* node = new SoScale;
+            node->scaleFactor = SbVec3f(1.0f, 1.0f, scale);
+            group->addChild(node);
+        }, cameraAt(SbVec3f(200.0f, 60.0f, 60.0f * scale + 10.0f), SbVec3f(128.0f, 128.0f, 20.0f * scale), 0.5f, 500.0f));
+        expectPromise(stage, root, surface, 2.0, scale);
+    }
+}
+
+TEST(PixelError, HoldsWithHolesAndOddSizes) {
+    auto map = fractalMap(200, 139, 50.0);
+    for (int row = 60; row < 80; ++row)
+        for (int column = 90; column < 130; ++column) map.heights[std::size_t(row * 200 + column)] = std::numeric_limits<float>::quiet_NaN();
+    Surface surface = surfaceOf(map);
+    Stage stage(kSide, kSide);
+    const auto root = sceneOf(Kind::Roam, surface, {}, unlitTexture, cameraAt(SbVec3f(-20.0f, 20.0f, 70.0f), SbVec3f(100.0f, 70.0f, 20.0f), 0.5f, 500.0f));
+    stage.render(root.get());
+    // Samples at the rim of the hole may be covered by the hole's own cells.
+    for (int row = 58; row < 82; ++row)
+        for (int column = 88; column < 132; ++column) surface.points[surface.index(column, row)][2] = std::numeric_limits<float>::quiet_NaN();
+    const Measured measured = measure(stage, root.get(), surface);
+    EXPECT_LE(measured.largest, 2.1);
+    EXPECT_EQ(measured.missing, 0);
+    EXPECT_GT(measured.samples, 1000);
+}
+
+TEST(PixelError, ThatABudgetPreventsIsToldAsItIs) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
+    Stage stage(kSide, kSide);
+    const auto root = sceneOf(Kind::Roam, surface, {.pixelError = 0.5f}, unlitTexture, flight(0));
+    static_cast<SoROAMTerrain*>(terrainIn(root.get()))->triangleCount = 500;
+    stage.render(root.get());
+    const double told = terrainIn(root.get())->getStatistics().errorPixels;
+    const Measured measured = measure(stage, root.get(), surface);
+    EXPECT_GT(told, 0.5);
+    EXPECT_LE(measured.largest, told + 0.1);
+}
+
+TEST(PixelError, OfBruteForceIsNone) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
+    Stage stage(kSide, kSide);
+    const auto root = sceneOf(Kind::BruteForce, surface, {}, unlitTexture, flight(0));
+    stage.render(root.get());
+    const Measured measured = measure(stage, root.get(), surface);
+    EXPECT_LE(measured.largest, 0.1);
+    EXPECT_EQ(measured.missing, 0);
+}

@@ -1,0 +1,67 @@
+// A map of 4097 x 4097 samples: the full-resolution picture is brute force's, which smaller maps compare with Coin's own shape.
+#include "Scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include <SoTerrain/SoHeightMap.h>
+
+using namespace test;
+
+namespace {
+
+constexpr int kSide = 4097;
+
+/// 16-bit heights of a fractal, tiled from a smaller one with slopes that differ from tile to tile.
+void writeMap(const std::string& path) {
+    constexpr int kTile = 1024;
+    const auto tile = fractalMap(kTile + 1, kTile + 1, 20000.0);
+    std::vector<std::uint8_t> row(std::size_t(kSide) * 2);
+    std::ofstream file(path, std::ios::binary);
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            // Mirrored from tile to tile, so that no step stands at their borders.
+            const auto fold = [](int i) { return (i / kTile) % 2 ? kTile - i % kTile : i % kTile; };
+            const auto sample = std::uint16_t(tile.at(fold(x), fold(y)) + 3.0f * float(x) + 2.0f * float(y));
+            row[std::size_t(x) * 2] = std::uint8_t(sample & 255);
+            row[std::size_t(x) * 2 + 1] = std::uint8_t(sample >> 8);
+        }
+        file.write(reinterpret_cast<const char*>(row.data()), std::streamsize(row.size()));
+    }
+}
+
+Ref<SoSeparator> largeScene(Kind kind, SoHeightMap* map) {
+    Ref<SoSeparator> root(new SoSeparator);
+    root->addChild(cameraAt({-300.0f, -600.0f, 1500.0f}, {2000.0f, 2000.0f, 200.0f}, 50.0f, 9000.0f));
+    auto* group = new SoSeparator;
+    unlitTexture(group);
+    group->addChild(map);
+    group->addChild(nodeOf(kind, 0, 0));
+    root->addChild(group);
+    return root;
+}
+
+}  // namespace
+
+TEST(LargeMaps, OfSixteenMillionSamplesLookLikeTheyAre) {
+    const TemporaryFolder folder;
+    writeMap(folder.file("large.raw"));
+    Ref<SoHeightMap> map(new SoHeightMap);
+    map->filename = folder.file("large.raw").c_str();
+    map->rawType = SoHeightMap::UINT16_LITTLE_ENDIAN;
+    map->heightScale = 0.03f;
+    Stage stage;
+    const auto draw = [&](Kind kind) {
+        const auto root = largeScene(kind, map.get());
+        const auto picture = stage.render(root.get());
+        const SoTerrainStatistics statistics = terrainIn(root.get())->getStatistics();
+        std::printf("%s: %u triangles, built in %.0f ms, %zu MiB, buffers %zu MiB\n", nameOf(kind), statistics.triangles, statistics.buildMilliseconds,
+                    statistics.memoryBytes >> 20, statistics.bufferBytes >> 20);
+        return picture;
+    };
+    const auto roam = draw(Kind::Roam), bruteForce = draw(Kind::BruteForce);
+    savePicture("size_4097x4097", {bruteForce, roam});
+    expectAlike(bruteForce, roam, 3.0);
+}
