@@ -1,4 +1,5 @@
 // The bound on the screen error against direct projection, in double, of random points in random boxes under random cameras.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -95,25 +96,45 @@ TEST(ScreenSpace, BoundIsTightForASmallBox)
     EXPECT_GT(checked, 500);
 }
 
-TEST(ScreenSpace, CoarseBoundIsStillABoundAndOnlyGivenWhereItIsEnough)
+TEST(ScreenSpace, CallsNoBoxOutsideThatHoldsAPointInView)
 {
     std::mt19937 random(3);
-    int coarse = 0, exact = 0;
+    int outside = 0, inView = 0;
     for (int i = 0; i < kCases; ++i) {
         const Case c(random);
-        const ScreenSpace space(c.view, c.localFromFrame, c.direction);
-        const float error = float(uniform(random, 0.0, 0.3)), enough = float(std::pow(10.0, uniform(random, -1.0, 2.0)));
-        const float bound = space.screenError(error, c.box), quick = space.screenError(error, c.box, enough);
-        if (quick == bound) {
-            ++exact;
-            continue;
+        const bool isOutside = ScreenSpace(c.view, c.localFromFrame, c.direction).isOutside(c.box);
+        outside += isOutside;
+        for (int k = 0; k < 8; ++k) {
+            if (!c.projected(c.pointInBox(random)).inView) continue;
+            ++inView;
+            ASSERT_FALSE(isOutside) << "case " << i;
         }
-        ++coarse;
-        ASSERT_LE(quick, enough);
-        ASSERT_GE(quick * (1.0f + float(kRounding)), bound);
     }
-    EXPECT_GT(coarse, 100);
-    EXPECT_GT(exact, 100);
+    EXPECT_GT(outside, kCases / 10);
+    EXPECT_GT(inView, kCases / 10);
+}
+
+TEST(ScreenSpace, CallsEveryBoxOutsideWhoseCornersAllLieBeyondOnePlane)
+{
+    std::mt19937 random(5);
+    int outside = 0;
+    for (int i = 0; i < kCases; ++i) {
+        const Case c(random);
+        int beyond[6] = {};
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 sign(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
+            const glm::dvec3 p = glm::dvec3(c.box.centre) + sign * glm::dvec3(c.box.half);
+            const glm::dvec4 clip = c.view.clipFromLocal * (c.localFromFrame * glm::dvec4(p, 1.0));
+            for (int axis = 0; axis < 3; ++axis) {
+                beyond[2 * axis] += clip[axis] < -clip.w - 1e-3;
+                beyond[2 * axis + 1] += clip[axis] > clip.w + 1e-3;
+            }
+        }
+        if (*std::max_element(beyond, beyond + 6) < 8) continue;
+        ++outside;
+        ASSERT_TRUE(ScreenSpace(c.view, c.localFromFrame, c.direction).isOutside(c.box)) << "case " << i;
+    }
+    EXPECT_GT(outside, kCases / 10);
 }
 
 TEST(ScreenSpace, ErrorIsInfiniteWhereTheBoxReachesBehindTheEye)
@@ -143,12 +164,11 @@ TEST(ScreenSpace, InfiniteErrorIsInfiniteFromEverywhere)
     const View above{projection * glm::lookAt(glm::dvec3(0.0, 0.0, 100.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0)), {400.0, 400.0}};
     const Box box{glm::vec3(0.0f), glm::vec3(1.0f)};
     const float infinity = std::numeric_limits<float>::infinity();
-    for (const float enough : {-1.0f, 2.0f})
-        EXPECT_EQ(ScreenSpace(above, glm::dmat4(1.0), ErrorDirection::Vertical).screenError(infinity, box, enough), infinity);
+    EXPECT_EQ(ScreenSpace(above, glm::dmat4(1.0), ErrorDirection::Vertical).screenError(infinity, box), infinity);
     std::mt19937 random(6);
     for (int i = 0; i < 1000; ++i) {
         const Case c(random);
-        ASSERT_EQ(ScreenSpace(c.view, c.localFromFrame, c.direction).screenError(infinity, c.box, 1.0f), infinity);
+        ASSERT_EQ(ScreenSpace(c.view, c.localFromFrame, c.direction).screenError(infinity, c.box), infinity);
     }
 }
 
