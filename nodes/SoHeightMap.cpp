@@ -96,6 +96,7 @@ class SoHeightMap::Private {
 public:
     std::shared_ptr<const terrain::HeightSource> source;
     bool isStale = true;       ///< a field changed since the file was read
+    bool hasFailed = false;    ///< the file could not be read
     SbString path;             ///< filename as it was found when the node was read; empty: look again
 };
 
@@ -160,6 +161,7 @@ void SoHeightMap::copyContents(const SoFieldContainer * from, SbBool copyConnect
     pimpl->path = other->pimpl->path;
     pimpl->source = other->pimpl->source;
     pimpl->isStale = other->pimpl->isStale;
+    pimpl->hasFailed = other->pimpl->hasFailed;
 }
 
 void SoHeightMap::notify(SoNotList * list)
@@ -172,6 +174,7 @@ void SoHeightMap::notify(SoNotList * list)
 void SoHeightMap::load()
 {
     pimpl->isStale = false;
+    pimpl->hasFailed = false;
     if (this->filename.getValue().getLength() == 0) {
         pimpl->source.reset();
         return;
@@ -189,6 +192,7 @@ void SoHeightMap::load()
     options.heightOffset = this->heightOffset.getValue();
     if (!std::isnan(this->noData.getValue())) options.noData = this->noData.getValue();
     auto source = terrain::openHeightFile(pimpl->path.getString(), options);
+    pimpl->hasFailed = !source;
     if (source)
         pimpl->source = source.value();
     else
@@ -196,12 +200,18 @@ void SoHeightMap::load()
         SoDebugError::postWarning("SoHeightMap", "%s", source.error().message().c_str());
 }
 
+SbBool SoHeightMap::isLoaded()
+{
+    if (pimpl->isStale) load();
+    return pimpl->source && !pimpl->hasFailed;
+}
+
 void SoHeightMap::doAction(SoAction * action)
 {
     SoState * state = action->getState();
     if (!state->isElementEnabled(SoHeightMapElement::getClassStackIndex())) return;
     if (pimpl->isStale) load();
-    SoHeightMapElement::set(state, this, pimpl->source.get());
+    SoHeightMapElement::set(state, this, pimpl->source.get(), pimpl->hasFailed);
 }
 
 void SoHeightMap::GLRender(SoGLRenderAction * action)

@@ -16,12 +16,15 @@ void SoHeightMapElement::init(SoState * state)
 {
     inherited::init(state);
     this->source = NULL;
+    this->failed = FALSE;
 }
 
-void SoHeightMapElement::set(SoState * state, SoNode * node, const terrain::HeightSource * source)
+void SoHeightMapElement::set(SoState * state, SoNode * node, const terrain::HeightSource * source, SbBool failed)
 {
     SoHeightMapElement * element = static_cast<SoHeightMapElement *>(inherited::getElement(state, classStackIndex, node));
-    if (element) element->source = source;
+    if (!element) return;
+    element->source = source;
+    element->failed = failed;
 }
 
 const SoHeightMapElement * SoHeightMapElement::getInstance(SoState * state)
@@ -32,4 +35,9 @@ const SoHeightMapElement * SoHeightMapElement::getInstance(SoState * state)
 const terrain::HeightSource * SoHeightMapElement::getSource() const
 {
     return this->source;
+}
+
+SbBool SoHeightMapElement::hasFailed() const
+{
+    return this->failed;
 }

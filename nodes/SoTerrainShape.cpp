@@ -11,7 +11,8 @@
   A point that is not finite is a hole: the cells around it are not drawn and not picked.
 
   Normals, materials and texture coordinates are taken as SoQuadMesh takes them, with their bindings. Without normals the node computes
-  smooth ones, without texture coordinates the texture spans the terrain. With a binding per face or row a vertex has the value of the
+  smooth ones, without texture coordinates the texture spans the terrain. The front of a height field is its upper side, whatever
+  SoShapeHints::vertexOrdering says and whichever way rows run, so that it is never black or culled from above. With a binding per face or row a vertex has the value of the
   face or row that begins at it. SoDrawStyle, SoComplexity, SoShapeHints, lights, fog, clip planes, several texture units and
   shader programs act as on any Coin shape: vertices are the samples themselves, drawn from plain vertex arrays.
 
@@ -69,12 +70,14 @@
 #include <Inventor/elements/SoGLLazyElement.h>
 #include <Inventor/elements/SoModelMatrixElement.h>
 #include <Inventor/elements/SoProjectionMatrixElement.h>
+#include <Inventor/elements/SoShapeHintsElement.h>
 #include <Inventor/elements/SoViewingMatrixElement.h>
 #include <Inventor/elements/SoViewportRegionElement.h>
 #include <Inventor/errors/SoDebugError.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoHeightMap.h>
+#include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoTerrainDetail.h>
 
 #include <glm/matrix.hpp>
@@ -100,6 +103,12 @@ glm::dmat4 toGlm(const SbMatrix & matrix)
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) result[i][j] = matrix[i][j];
     return result;
+}
+
+/// Whether columns, rows and heights make a left-handed frame.
+bool isMirrored(const terrain::SampleGrid & grid)
+{
+    return glm::determinant(grid.localFromFrame()) < 0.0;
 }
 
 terrain::View viewOf(SoState * state)
@@ -171,7 +180,8 @@ std::optional<TerrainGrid> SoTerrainShape::Private::findGrid(SoState * state, bo
     const GridRequest request{master->verticesPerRow.getValue(), master->verticesPerColumn.getValue(), master->startIndex.getValue()};
     auto found = grids.find(state, request, withErrors);
     if (found) return std::move(found).value();
-    master->warnOnce(found.error().message().c_str());
+    // An SoHeightMap that failed has said why.
+    if (!SoHeightMapElement::getInstance(state)->hasFailed()) master->warnOnce(found.error().message().c_str());
     return std::nullopt;
 }
 
@@ -185,8 +195,10 @@ terrain::LodSettings SoTerrainShape::Private::settingsFor(SoState * state, const
         master->warnOnce(("pixelError: expected 0 or more pixels, found " + std::to_string(pixels) + "; 2 is taken").c_str());
     settings.pixelError *= std::exp2(4.0f * (0.5f - SoComplexityElement::get(state)));
     settings.cull = master->frustumCulling.getValue();
-    // Coordinates are oriented as SoQuadMesh orients them, so that SoShapeHints mean the same; a height map faces up.
-    settings.clockwise = !data.fromHeightMap || glm::determinant(data.grid.localFromFrame()) < 0.0;
+    // A height field's front is its upper side, whichever way rows run and whatever SoShapeHints call the front; only a curved grid has
+    // SoQuadMesh's order, because it has no upper side.
+    const bool hintsClockwise = SoShapeHintsElement::getVertexOrdering(state) == SoShapeHintsElement::CLOCKWISE;
+    settings.clockwise = !data.grid.isRegular() || hintsClockwise != isMirrored(data.grid);
     master->getSettings(settings);
     return settings;
 }

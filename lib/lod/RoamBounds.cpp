@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include "lod/ErrorHierarchy.h"
 
 namespace terrain {
@@ -74,17 +77,15 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
     // The largest value of a form over a box is form(centre) + |form| . half; outside by -that where it is negative.
     float outside[kLanes];
     for (float& value : outside) value = -kInfinity;
-    if (request.cull)
-        for (const glm::vec4& plane : space.planes()) {
-            const float px = plane.x, py = plane.y, pz = plane.z, pw = plane.w;
-            const float reachX = std::fabs(px), reachY = std::fabs(py), reachZ = std::fabs(pz);
+    for (const glm::vec4& plane : space.planes()) {
+        const float px = plane.x, py = plane.y, pz = plane.z, pw = plane.w;
+        const float reachX = std::fabs(px), reachY = std::fabs(py), reachZ = std::fabs(pz);
 #pragma omp simd
-            for (std::size_t i = 0; i < kLanes; ++i) {
-                const float largest = px * b.x[i] + py * b.y[i] + pz * b.z[i] + pw + reachX * b.halfX[i] + reachY * b.halfY[i] +
-                                      reachZ * b.halfZ[i];
-                outside[i] = outside[i] > -largest ? outside[i] : -largest;
-            }
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const float largest = px * b.x[i] + py * b.y[i] + pz * b.z[i] + pw + reachX * b.halfX[i] + reachY * b.halfY[i] + reachZ * b.halfZ[i];
+            outside[i] = outside[i] > -largest ? outside[i] : -largest;
         }
+    }
     if (space.direction() == ErrorDirection::Vertical)
 #pragma omp simd
         for (std::size_t i = 0; i < kLanes; ++i)
@@ -179,8 +180,20 @@ Box RoamBounds::box(std::size_t number) const
 void RoamBounds::evaluate(std::size_t number, const EvaluationRequest& request)
 {
     const Box b = box(number);
-    const bool isHidden = error_[number] == 0 || (request.cull && request.space->isOutside(b));
-    priority_[number] = isHidden ? 0.0f : request.space->screenError(ErrorHierarchy::decode(error_[number]), b);
+    const float error = ErrorHierarchy::decode(error_[number]);
+    if (error == 0.0f)
+        priority_[number] = 0.0f;
+    else if (!request.space->isOutside(b))
+        priority_[number] = request.space->screenError(error, b);
+    else
+        priority_[number] = request.cull ? 0.0f : turnedError(error, b, request);
+}
+
+float RoamBounds::turnedError(float error, const Box& box, const EvaluationRequest& request)
+{
+    const glm::vec3 gap = glm::max(glm::abs(box.centre - request.motion->eye()) - box.half, glm::vec3(0.0f));
+    const float distance = glm::length(gap * request.motion->unitLength());
+    return error * request.space->largestFactor() / (request.depthAtEye + request.depthPerLength * distance);
 }
 
 int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& request)
@@ -193,6 +206,9 @@ int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& reques
         for (std::size_t i = 0; i < kBlock; ++i) loadBox(boxes_[first + i], i, lanes);
     float frames[kBlock];
     evaluateLanes(lanes, &error_[first], request, &priority_[first], frames);
+    if (!request.cull)
+        for (std::size_t number = first; number < first + kBlock; ++number)
+            if (priority_[number] == 0.0f && error_[number] != 0) priority_[number] = turnedError(ErrorHierarchy::decode(error_[number]), box(number), request);
     float soonest = float(ViewMotion::kLongest);
     for (const float lasting : frames)
         if (!(lasting >= soonest)) soonest = lasting;

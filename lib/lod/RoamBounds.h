@@ -14,13 +14,16 @@
 
 namespace terrain {
 
-/// What a selection asks of every block in a frame.
+/// What a selection asks of every block in a frame. Without culling, what is outside of the view has the error that it would have if the
+/// camera turned to it, where depth grows with distance as it does straight ahead.
 struct EvaluationRequest {
     const ScreenSpace* space = nullptr;
     const ViewMotion* motion = nullptr;
     bool cull = true;
     float threshold = 0.0f;      ///< pixels above which a diamond is to be split
     float full = 0.0f;           ///< pixels above which it is split and stands still
+    float depthAtEye = 0.0f;      ///< 0 but for orthographic cameras
+    float depthPerLength = 0.0f;  ///< 0 for those
     float assumedFactor = 0.0f;  ///< ScreenSpace::largestFactor() will not exceed it while results are kept
 };
 
@@ -57,6 +60,7 @@ public:
 
 private:
     Box box(std::size_t number) const;
+    static float turnedError(float error, const Box& box, const EvaluationRequest& request);
 
     bool regular_;
     std::size_t size_ = 0;

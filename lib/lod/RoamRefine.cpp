@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 #include "base/ProfileScope.h"
 #include "lod/RoamMesh.h"
 
@@ -56,10 +58,13 @@ void RoamMesh::prepare(const SampleGrid& grid, const View& view, const LodSettin
     operations_ = 0;
     space_.emplace(view, grid.localFromFrame(), grid.isRegular() ? ErrorDirection::Vertical : ErrorDirection::Any);
     // A budget needs all priorities in order, not only on which side of a threshold they are.
-    mayDefer_ = motion_.advance(view, grid.localFromFrame()) && sameSettings && wasDone && settings.triangleBudget == 0 &&
+    mayDefer_ = motion_.advance(view, grid.localFromFrame()) && sameSettings && wasDone && settings.cull && settings.triangleBudget == 0 &&
                 space_->largestFactor() <= request_.assumedFactor;
     const float assumedFactor = mayDefer_ ? request_.assumedFactor : 1.05f * space_->largestFactor();
-    request_ = {&*space_, &motion_, settings.cull, splitThreshold(), settings.pixelError, assumedFactor};
+    const glm::vec4 w = space_->depth();
+    const float depthPerLength = glm::length(glm::vec3(w) / motion_.unitLength());
+    const float depthAtEye = std::max(0.0f, glm::dot(glm::vec3(w), motion_.eye()) + w.w);
+    request_ = {&*space_, &motion_, settings.cull, splitThreshold(), settings.pixelError, depthAtEye, depthPerLength, assumedFactor};
     update();
 }
 

@@ -33,6 +33,9 @@ public:
     SoSFEnum rawType;        ///< UINT8
     SoSFFloat noData;        ///< sample value that marks a hole; NaN (the default) marks none
 
+    /// Whether the file that the fields name has been read; reads it if need be.
+    SbBool isLoaded();
+
     virtual void doAction(SoAction * action);
     virtual void GLRender(SoGLRenderAction * action);
     virtual void callback(SoCallbackAction * action);

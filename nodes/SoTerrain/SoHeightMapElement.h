@@ -18,16 +18,19 @@ public:
     static void initClass();
 
     virtual void init(SoState * state);
-    static void set(SoState * state, SoNode * node, const terrain::HeightSource * source);
+    static void set(SoState * state, SoNode * node, const terrain::HeightSource * source, SbBool failed);
     static const SoHeightMapElement * getInstance(SoState * state);
     /// NULL where no node has set one, or its file could not be read.
     const terrain::HeightSource * getSource() const;
+    /// A node names a file that could not be read, and has said so.
+    SbBool hasFailed() const;
 
 protected:
     virtual ~SoHeightMapElement();
 
 private:
     const terrain::HeightSource * source;
+    SbBool failed;
 };
 
 #endif
