@@ -17,6 +17,9 @@ const char* const moreHelp = R"(
                             spans one unit in x and y
       --height-scale S      factor on the heights. Without it, 0..255 of an 8-bit map (0..65535 of a 16-bit map, lowest
                             to highest of a map with fractions) becomes 0..0.051; 1 with --spacing or a file's own spacing
+      --channel N           channel of an image or raster that holds the heights, from 0; needed when there are three or more
+      --raw-size WxH        columns and rows of a .raw file; without it, it is a square
+      --raw-type TYPE       samples of a .raw file: uint8 (default), uint16le, uint16be
 
 Level of detail
   -e, --pixel-error PX      greatest error on screen, in pixels (2)
@@ -41,7 +44,8 @@ Output
                             patches,error_px,resident_bytes
       --stats               a JSON object on standard output at the end
       --measure-error K     every K frames measure the error on screen of every sample in view
-      --offscreen[=WxH]     no window and no display (1024x768). One frame, unless -v, --flight or --frames asks for more
+      --offscreen[=WxH]     no window and no display (1024x768). One frame, unless -v, --flight or --frames asks for more. Without
+                            -p, --stats, --measure-error and --output it prints one line of figures
       --output NAME         write the frames of --offscreen: frame-%04d.png
   -f, --full-screen         start with a full screen
       --help, --version
@@ -51,6 +55,8 @@ Keys
   Keypad + -  pixel error         F  frustum culling      L  wireframe         Space  constant height over the ground
   Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
   Left Alt+Enter  full screen     Esc  quit
+
+R writes the flight to soterrain-flight.csv, P the profile of its replay, as -p does, to soterrain-replay.csv.
 
 Exit status: 0, 1 when data can't be read, drawn or written, 2 for a wrong command line.
 )";

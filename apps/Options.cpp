@@ -4,7 +4,7 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstring>
+#include <limits>
 #include <string_view>
 
 #include "FrameName.h"
@@ -17,7 +17,8 @@ using terrain::Result;
 namespace {
 
 // Long options without a short one get a number beyond the characters.
-enum LongOption { Scene = 256, Offscreen, Output, Frames, FlightFile, Record, Spacing, HeightScale, MeasureError, Stats, Help, Version };
+enum LongOption { Scene = 256, Offscreen, Output, Frames, FlightFile, Record, Spacing, HeightScale, Channel, RawSize, RawSamples, MeasureError, Stats,
+                  Help, Version };
 
 const option longOptions[] = {
     {"heightmap", required_argument, nullptr, 'h'},
@@ -41,6 +42,9 @@ const option longOptions[] = {
     {"record", required_argument, nullptr, Record},
     {"spacing", required_argument, nullptr, Spacing},
     {"height-scale", required_argument, nullptr, HeightScale},
+    {"channel", required_argument, nullptr, Channel},
+    {"raw-size", required_argument, nullptr, RawSize},
+    {"raw-type", required_argument, nullptr, RawSamples},
     {"measure-error", required_argument, nullptr, MeasureError},
     {"stats", no_argument, nullptr, Stats},
     {"help", no_argument, nullptr, Help},
@@ -78,6 +82,25 @@ std::optional<glm::dvec2> readPair(std::string_view text, char separator)
     return glm::dvec2(*first, *second);
 }
 
+// Two whole numbers from lowest to highest with an x between.
+std::optional<glm::ivec2> readSize(std::string_view text, int lowest, int highest)
+{
+    const std::size_t middle = text.find('x');
+    if (middle == text.npos) return std::nullopt;
+    const auto width = readNumber<int>(text.substr(0, middle)), height = readNumber<int>(text.substr(middle + 1));
+    const auto fits = [&](std::optional<int> side) { return side && *side >= lowest && *side <= highest; };
+    return fits(width) && fits(height) ? std::optional(glm::ivec2(*width, *height)) : std::nullopt;
+}
+
+constexpr struct {
+    std::string_view name;
+    terrain::RawType type;
+} rawTypes[] = {
+    {"uint8", terrain::RawType::UInt8},
+    {"uint16le", terrain::RawType::UInt16LittleEndian},
+    {"uint16be", terrain::RawType::UInt16BigEndian},
+};
+
 // Collects what getopt finds; the first complaint is kept.
 class Reader {
 public:
@@ -95,7 +118,9 @@ private:
     void takeFile(int code, const char* value);
     void takeNumber(int code, const char* value);
     void takeAlgorithm(const char* value);
+    void takeSpacing(const char* value);
     void takeSize(int code, const char* value);
+    void takeRawType(const char* value);
     void number(int code, const char* value, double lowest, bool exclusive, std::optional<double>& target);
     void whole(int code, const char* value, int lowest, std::optional<int>& target);
 };
@@ -104,8 +129,11 @@ void Reader::take(int code, const char* value)
 {
     switch (code) {
     case 'h': case 't': case 'p': case Scene: case Output: case FlightFile: case Record: takeFile(code, value); break;
-    case 'A': case 'F': case 'e': case 'r': case 'g': case Frames: case HeightScale: case MeasureError: takeNumber(code, value); break;
-    case Offscreen: case Spacing: takeSize(code, value); break;
+    case 'A': case 'F': case 'e': case 'r': case 'g': case Frames: case HeightScale: case Channel: case MeasureError:
+        takeNumber(code, value); break;
+    case Offscreen: case RawSize: takeSize(code, value); break;
+    case Spacing: takeSpacing(value); break;
+    case RawSamples: takeRawType(value); break;
     case 'a': takeAlgorithm(value); break;
     default: takeFlag(code); break;
     }
@@ -148,6 +176,7 @@ void Reader::takeNumber(int code, const char* value)
     case HeightScale: number(code, value, 0.0, true, options.heightScale); break;
     case 'r': whole(code, value, 0, options.triangleCount); break;
     case 'g': whole(code, value, 2, options.tileSize); break;
+    case Channel: whole(code, value, 0, options.channel); break;
     case Frames: whole(code, value, 1, options.frames); break;
     default: whole(code, value, 1, options.measureError); break;
     }
@@ -173,19 +202,33 @@ void Reader::takeAlgorithm(const char* value)
     if (!options.algorithm) refuse("-a", "one of " + algorithmNames(), std::string("\"") + value + "\"");
 }
 
+void Reader::takeSpacing(const char* value)
+{
+    options.spacing = readPair(value, ',');
+    if (options.spacing && options.spacing->x > 0.0 && options.spacing->y > 0.0) return;
+    refuse("--spacing", "X or X,Y above 0", std::string("\"") + value + "\"");
+}
+
 void Reader::takeSize(int code, const char* value)
 {
-    if (code == Spacing) {
-        options.spacing = readPair(value, ',');
-        if (options.spacing && options.spacing->x > 0.0 && options.spacing->y > 0.0) return;
-        return refuse("--spacing", "X or X,Y above 0", std::string("\"") + value + "\"");
+    if (code == RawSize) {
+        options.rawSize = readSize(value, 2, std::numeric_limits<int>::max());
+        if (!options.rawSize) refuse("--raw-size", "COLUMNSxROWS of at least 2x2", std::string("\"") + value + "\"");
+        return;
     }
-    options.offscreen = glm::ivec2(1024, 768);
-    if (!value) return;
-    const auto size = std::strchr(value, 'x') ? readPair(value, 'x') : std::nullopt;
-    const auto side = [](double s) { return s >= 1.0 && s <= 32768.0 && s == std::floor(s); };
-    if (size && side(size->x) && side(size->y)) options.offscreen = glm::ivec2(*size);
-    else refuse("--offscreen", "WIDTHxHEIGHT in pixels", std::string("\"") + value + "\"");
+    options.offscreen = value ? readSize(value, 1, 32767) : glm::ivec2(1024, 768);
+    if (!options.offscreen) refuse("--offscreen", "WIDTHxHEIGHT in pixels", std::string("\"") + value + "\"");
+}
+
+void Reader::takeRawType(const char* value)
+{
+    std::string known;
+    for (const auto& raw : rawTypes) {
+        if (raw.name == value) options.rawType = raw.type;
+        known += (known.empty() ? "" : ", ") + std::string(raw.name);
+        if (raw.name == value) return;
+    }
+    refuse("--raw-type", "one of " + known, std::string("\"") + value + "\"");
 }
 
 // What getopt found wrong at its current place.
@@ -204,6 +247,9 @@ void checkCombination(Reader& reader)
     if (o.heightMap.empty() && o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "neither");
     if (!o.heightMap.empty() && !o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "both");
     if (!o.scene.empty() && (o.spacing || o.heightScale)) reader.refuse("--spacing, --height-scale", "-h heightmap", "--scene");
+    if (!o.scene.empty() && (o.channel || o.rawSize || o.rawType)) {
+        reader.refuse("--channel, --raw-size, --raw-type", "-h heightmap (a scene's SoHeightMap has fields for them)", "--scene");
+    }
     if (!o.scene.empty() && o.algorithm) reader.refuse("-a", "-h heightmap (a scene file names its nodes itself)", "--scene");
     if (!o.scene.empty() && !o.texture.empty()) reader.refuse("-t", "-h heightmap (a scene file names its textures itself)", "--scene");
     if (o.output.empty()) return;

@@ -8,6 +8,7 @@
 
 #include "Algorithms.h"
 #include "base/Result.h"
+#include "height/HeightSource.h"
 
 namespace app {
 
@@ -29,6 +30,9 @@ struct Options {
     std::optional<int> measureError;         ///< --measure-error: every so many frames
     std::optional<glm::dvec2> spacing;       ///< --spacing
     std::optional<double> heightScale;       ///< --height-scale
+    std::optional<int> channel;              ///< --channel, from 0
+    std::optional<glm::ivec2> rawSize;       ///< --raw-size, columns and rows
+    std::optional<terrain::RawType> rawType;  ///< --raw-type
     std::optional<glm::ivec2> offscreen;     ///< --offscreen, pixels
     bool fullScreen = false;                 ///< -f
     bool frustumCulling = false;             ///< -c

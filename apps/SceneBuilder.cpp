@@ -54,6 +54,7 @@ private:
     void setField(const char* flag, const char* name, const std::optional<Value>& value);
     SoPath* find(SoType type, bool derived) const;
     void chooseTerrain();
+    std::optional<Error> checkHeightMaps() const;
     void readGridOfScene();
     void placeSceneCamera();
 
@@ -123,6 +124,9 @@ void SceneBuilder::addHeightMap()
     map->spacing.setValue(float(grid.spacing.x), float(grid.spacing.y));
     map->heightScale = float(grid.heightScale);
     map->heightOffset = float(grid.heightOffset);
+    if (options_.channel) map->channel = *options_.channel;
+    if (options_.rawSize) map->rawSize.setValue(options_.rawSize->x, options_.rawSize->y);
+    if (options_.rawType) map->rawType = int(*options_.rawType);
     scene_.root_->addChild(map);
 }
 
@@ -168,7 +172,11 @@ std::optional<Error> SceneBuilder::addTerrain(const Algorithm& algorithm)
 
 std::optional<Error> SceneBuilder::fromHeightMap()
 {
-    auto source = terrain::openHeightFile(options_.heightMap, {});
+    terrain::HeightFileOptions how;
+    how.channel = options_.channel.value_or(how.channel);
+    how.rawSize = options_.rawSize.value_or(how.rawSize);
+    how.rawType = options_.rawType.value_or(how.rawType);
+    auto source = terrain::openHeightFile(options_.heightMap, how);
     if (!source) return source.error();
     auto grid = placeGrid(std::move(source).value(), options_.spacing, options_.heightScale);
     if (!grid) return grid.error();
@@ -212,6 +220,24 @@ void SceneBuilder::chooseTerrain()
     path->unref();
     scene_.terrain_ = static_cast<SoFullPath*>(path)->getTail();
     scene_.algorithm_ = scene_.terrain_->getTypeId().getName().getString();
+}
+
+// The nodes have told what is wrong with the file; the program must not go on with a scene that lacks its terrain.
+std::optional<Error> SceneBuilder::checkHeightMaps() const
+{
+    SoSearchAction search;
+    search.setType(SoHeightMap::getClassTypeId());
+    search.setInterest(SoSearchAction::ALL);
+    search.apply(scene_.root_.get());
+    const SoPathList& found = search.getPaths();
+    for (int i = 0; i < found.getLength(); ++i) {
+        auto* map = static_cast<SoHeightMap*>(static_cast<SoFullPath*>(found[i])->getTail());
+        const SbString& name = map->filename.getValue();
+        if (name.getLength() > 0 && !map->isLoaded()) {
+            return Error{options_.scene, "height maps that can be read", std::string(name.getString()) + ", which cannot"};
+        }
+    }
+    return std::nullopt;
 }
 
 // A scene whose terrain stands on a file can be measured against that file.
@@ -285,6 +311,7 @@ std::optional<Error> SceneBuilder::fromFile()
     SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
     bounds.apply(scene_.root_.get());
     scene_.box_ = bounds.getBoundingBox();
+    if (auto problem = checkHeightMaps()) return problem;
     readGridOfScene();
     placeSceneCamera();
     return std::nullopt;

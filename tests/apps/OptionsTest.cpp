@@ -81,6 +81,31 @@ TEST(Options, SpacingTakesOneOrTwoNumbersAboveZero)
     for (const char* bad : {"0", "-1", "1,0", "1,2,3", "nan", ""}) EXPECT_NE(refusal({"-h", "m", "--spacing", bad}), "") << bad;
 }
 
+TEST(Options, RawSizeAndTypeAndChannelSayHowAFileIsRead)
+{
+    const auto result = parse({"-h", "m.raw", "--channel", "2", "--raw-size", "129x65", "--raw-type", "uint16be"});
+    ASSERT_TRUE(result) << result.error().message();
+    EXPECT_EQ(result.value().channel, 2);
+    EXPECT_EQ(result.value().rawSize, glm::ivec2(129, 65));
+    EXPECT_EQ(result.value().rawType, terrain::RawType::UInt16BigEndian);
+    EXPECT_EQ(parse({"-h", "m", "--raw-type", "uint16le"}).value().rawType, terrain::RawType::UInt16LittleEndian);
+    EXPECT_EQ(parse({"-h", "m", "--raw-type", "uint8"}).value().rawType, terrain::RawType::UInt8);
+}
+
+TEST(Options, BadRawSizesTypesAndChannelsAreRefusedByName)
+{
+    for (const char* bad : {"", "65", "1x65", "65x-65", "6.5x65", "65x65x65", "99999999999x2", "axb"}) {
+        EXPECT_NE(refusal({"-h", "m", "--raw-size", bad}).find("--raw-size"), std::string::npos) << bad;
+    }
+    for (const char* bad : {"", "uint16", "UINT8", "float"}) {
+        EXPECT_NE(refusal({"-h", "m", "--raw-type", bad}).find("uint16le"), std::string::npos) << bad;
+    }
+    for (const char* bad : {"", "-1", "1.5", "red"}) {
+        EXPECT_NE(refusal({"-h", "m", "--channel", bad}).find("--channel"), std::string::npos) << bad;
+    }
+    EXPECT_NE(refusal({"--scene", "s.iv", "--channel", "0"}).find("--channel"), std::string::npos);
+}
+
 TEST(Options, NumbersThatAreNoneAreRefusedByName)
 {
     for (const char* flag : {"-e", "-r", "-g", "-A", "-F", "--frames", "--measure-error", "--height-scale"}) {

@@ -5,7 +5,8 @@ export -n DISPLAY WAYLAND_DISPLAY QT_QPA_PLATFORM
 make_raw "$SCRATCH/map.raw"
 
 for line in "" "-x" "-h" "-h m -a magic" "-h m -e nan" "-h m -e -1" "-h m -r -1" "-h m -r 1.5" "-h m -g 0" "-h m -A 0" "-h m -F x" \
-    "-h m --offscreen=0x0" "-h m --frames 0" "-h m --spacing 0" "-h m stray" "-h m --output a.png" "--scene s -h m"; do
+    "-h m --offscreen=0x0" "-h m --frames 0" "-h m --spacing 0" "-h m stray" "-h m --output a.png" "--scene s -h m" "-h m --channel -1" "-h m --raw-size 65" \
+    "-h m --raw-type float"; do
     # shellcheck disable=SC2086
     expect 2 "$TEST" $line
     grep -q '^Usage: SoTerrainTest' "$SCRATCH/err" || fail "no usage on standard error: $line"
@@ -17,7 +18,7 @@ for name in bruteforce roam indexedfaceset quadmesh; do grep -q "$name" "$SCRATC
 
 expect 0 "$TEST" --help
 for word in -h -t -p -a -A -F -e -r -g -f -c -v -s --scene --offscreen --output --frames --flight --record --spacing --height-scale \
-    --measure-error --stats --help --version; do
+    --channel --raw-size --raw-type --measure-error --stats --help --version; do
     grep -q -e "$word" "$SCRATCH/out" || fail "--help does not tell about $word"
 done
 expect 0 "$TEST" --version
@@ -37,6 +38,9 @@ expect 1 "$TEST" -h "$SCRATCH/map.raw" --flight "$SCRATCH/none.csv" --offscreen 
 expect 1 "$TEST" -h "$SCRATCH/map.raw" --flight "$SCRATCH/bad.csv" --offscreen && message bad.csv:2
 expect 1 "$TEST" -h "$SCRATCH/map.raw" -p "$SCRATCH/no/p.csv" --offscreen && message p.csv
 expect 1 "$TEST" --scene "$SCRATCH/none.iv" --offscreen && message none.iv
+printf '#Inventor V2.1 ascii\nSeparator { SoHeightMap { filename "none.png" } SoROAMTerrain {} }\n' >"$SCRATCH/hollow.iv"
+expect 1 "$TEST" --scene "$SCRATCH/hollow.iv" --offscreen && message none.png
+expect 1 "$TEST" -h "$SCRATCH/map.raw" --raw-size 66x65 --offscreen && message map.raw
 expect 1 "$TEST" -h "$SCRATCH/map.raw" --offscreen --output "$SCRATCH/no/frame.ppm" && message frame.ppm
 
 # A window without a display is a message, not an abort.
