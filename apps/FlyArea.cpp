@@ -111,7 +111,11 @@ void FlyArea::advance(double now)
 
 void FlyArea::endOfAnimation()
 {
-    if (ends_) {
+    if (replayProfile_) {
+        endReplay("played");
+        takeOver();
+    } else if (ends_) {
+        logging_ = false;  // a redraw that still comes is no frame of the animation
         timer_.stop();
         play_.reset();
         SoQt::exitMainLoop();
@@ -124,6 +128,7 @@ void FlyArea::endOfAnimation()
 void FlyArea::takeOver()
 {
     if (play_ && !ends_) {
+        endReplay("stopped");
         play_.reset();
         camera_.setPose(scene_.pose());
     }
@@ -134,7 +139,7 @@ void FlyArea::actualRedraw()
 {
     const double start = nowMs();
     SoQtRenderArea::actualRedraw();
-    if (logging_) glFinish();
+    if (logging_ || replayProfile_) glFinish();
     const double end = nowMs();
     if (renderer_.empty()) {
         const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
@@ -163,6 +168,13 @@ void FlyArea::logFrame(double frameMs)
     const double time = play_ ? play_->animation.schedule.time(frame_) : nowMs() - startMs_;
     due_ = false;
     if (recording_) recording_->push_back({time, scene_.pose()});
+    if (replayProfile_) {
+        FrameFigures figures = scene_.figures();
+        figures.frame = frame_;
+        figures.timeMs = time;
+        figures.frameMs = frameMs;
+        replayProfile_->write(figures);
+    }
     if (!logging_) return;
     log_.frame(frame_, time, frameMs, scene_);
     if (!log_.measures(frame_)) return;

@@ -12,6 +12,7 @@
 
 #include "FlyCamera.h"
 #include "Options.h"
+#include "Profile.h"
 #include "RunLog.h"
 #include "Scene.h"
 #include "StatusLine.h"
@@ -54,6 +55,7 @@ private:
     void toggleDetail();
     void toggleRecord();
     void togglePlay();
+    void endReplay(const char* how);
     void takeOver();
     bool mouse(const QMouseEvent& event);
     void logFrame(double frameMs);
@@ -84,6 +86,7 @@ private:
     std::optional<float> formerError_;  ///< pixel error before full detail
     std::optional<std::vector<TimedPose>> recording_;
     std::vector<TimedPose> recorded_;
+    std::optional<ProfileWriter> replayProfile_;  ///< while P replays
     std::string message_;
     std::optional<std::pair<int, int>> drag_;
     QRect windowed_;  ///< geometry outside full screen

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <Inventor/Qt/SoQt.h>
 #include <Inventor/fields/SoSFBool.h>
@@ -39,6 +40,7 @@ constexpr SteeringKey steeringKeys[] = {
 constexpr float errorStep = 1.25f;
 constexpr float radiansPerPixel = 0.004f;
 const char* const recordFile = "soterrain-flight.csv";
+const char* const replayFile = "soterrain-replay.csv";
 
 }  // namespace
 
@@ -170,8 +172,19 @@ void FlyArea::togglePlay()
         return;
     }
     message_.clear();
+    if (auto profile = ProfileWriter::open(replayFile)) replayProfile_ = std::move(profile).value();
+    else message_ = std::string("cannot write ") + replayFile;
     const Flight path = std::move(flight).value();
     play({path, FrameSchedule::make(path.duration(), options_.frameTime, std::nullopt, true)});
+}
+
+void FlyArea::endReplay(const char* how)
+{
+    if (!replayProfile_) return;
+    const bool written = replayProfile_->close();
+    replayProfile_.reset();
+    message_ = std::string(how) + (written ? ", profile in " : ", cannot write ") + replayFile;
+    std::fprintf(stderr, "SoTerrainTest: %s\n", message_.c_str());
 }
 
 bool FlyArea::mouse(const QMouseEvent& event)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <locale>
 
 #include <nlohmann/json.hpp>
@@ -72,6 +73,19 @@ void FrameStatistics::setStart(double loadMs, double firstFrameMs)
 {
     loadMs_ = loadMs;
     firstFrameMs_ = firstFrameMs;
+}
+
+std::string FrameStatistics::line() const
+{
+    char text[160];
+    std::snprintf(text, sizeof text, "%zu %s, median %.2f ms, mean %.0f triangles", frame_.size(), frame_.size() == 1 ? "frame" : "frames",
+                  summarize(frame_).median, summarize(triangles_).mean);
+    std::string line = text;
+    if (!select_.empty()) {
+        std::snprintf(text, sizeof text, ", worst error bound %.2f px", errorBound_);
+        line += text;
+    }
+    return line;
 }
 
 std::string FrameStatistics::json(const std::string& algorithm, const std::string& renderer) const

@@ -51,6 +51,8 @@ public:
     void setStart(double loadMs, double firstFrameMs);
     /// The JSON object, indented.
     std::string json(const std::string& algorithm, const std::string& renderer) const;
+    /// Frames, their median time, mean triangles and, where the shape tells it, the greatest error bound, in one line.
+    std::string line() const;
     const ErrorSample& errors() const { return errors_; }
 
 private:

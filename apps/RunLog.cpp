@@ -60,6 +60,8 @@ std::optional<Error> RunLog::finish(const Options& options, const Scene& scene, 
         std::printf("screen error of %llu samples in view: rms %.3f, p99.9 %.3f, max %.3f px; %llu not drawn\n",
                     static_cast<unsigned long long>(errors.samples()), errors.rms(), errors.quantile(0.999), errors.maximum(),
                     static_cast<unsigned long long>(errors.missing));
+    } else if (options.offscreen && options.output.empty() && options.profile.empty()) {
+        std::printf("%s\n", statistics_.line().c_str());
     }
     if (std::fflush(stdout) != 0) return Error{"standard output", "a place to write to", "a write error"};
     return std::nullopt;

@@ -7,6 +7,7 @@
 #include <Inventor/SoPath.h>
 #include <Inventor/actions/SoGetMatrixAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
+#include <Inventor/nodes/SoQuadMesh.h>
 #include <SoTerrain/SoTerrainShape.h>
 
 namespace app {
@@ -96,6 +97,13 @@ FrameFigures Scene::figures()
         figures.triangles = s.triangles;
         figures.terrain = {s.selectMilliseconds, s.uploadMilliseconds, s.drawMilliseconds, s.patches,
                            s.errorPixels,        s.memoryBytes,        s.bufferBytes};
+        return figures;
+    }
+    if (terrain_ && terrain_->isOfType(SoQuadMesh::getClassTypeId())) {
+        // Coin counts two triangles for every point rather than for every cell.
+        const auto* mesh = static_cast<SoQuadMesh*>(terrain_);
+        const int columns = mesh->verticesPerRow.getValue(), rows = mesh->verticesPerColumn.getValue();
+        figures.triangles = columns > 1 && rows > 1 ? 2 * std::uint64_t(columns - 1) * std::uint64_t(rows - 1) : 0;
         return figures;
     }
     if (!countedTriangles_) {

@@ -32,6 +32,19 @@ for algorithm in bruteforce roam indexedfaceset quadmesh; do
     awk -v e="$error" 'BEGIN { exit !(e != "" && e <= 2.0) }' || fail "$algorithm: measured error $error px exceeds 2"
 done
 
+# Without anything else to write, one line tells about the frames.
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a roam --offscreen=64x48 --frames 3
+[ "$(wc -l <"$SCRATCH/out")" = 1 ] && grep -Eq '^3 frames, median [0-9.]+ ms, mean [0-9]+ triangles, worst error bound [0-9.]+ px$' "$SCRATCH/out" ||
+    fail "no line of figures: $(cat "$SCRATCH/out")"
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a roam --offscreen=64x48 --output "$SCRATCH/quiet.ppm"
+[ -s "$SCRATCH/out" ] && fail "a line of figures beside --output"
+
+# A headerless map that is no square, in 16 bits: 65 x 32 samples; its grid shows in the triangles of the quad mesh.
+head -c 4160 "$SCRATCH/map.raw" >"$SCRATCH/wide.raw"
+expect 0 "$TEST" -h "$SCRATCH/wide.raw" -a quadmesh --raw-size 65x32 --raw-type uint16le --offscreen=64x48
+grep -q ' mean 3968 triangles' "$SCRATCH/out" || fail "--raw-size and --raw-type: $(cat "$SCRATCH/out")"
+expect 0 "$TEST" -h "$SCRATCH/wide.raw" -a roam --raw-size 65x32 --raw-type uint16le --offscreen=64x48
+
 # Detail grows as the error shrinks.
 triangles() {
     expect 0 "$TEST" -h "$SCRATCH/map.raw" -a roam -e "$1" --offscreen --stats

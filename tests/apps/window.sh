@@ -100,8 +100,31 @@ title | grep -q 'of 2.00 px' || fail "Enter does not go back: $(title)"
 xdotool key Escape
 wait $program || fail "exit status $? of roam"
 
+# R records, P replays once and leaves a profile.
+program_path=$(realpath "$TEST")
+(cd "$SCRATCH" && exec "$program_path" -h map.raw -a roam >/dev/null 2>replay.err) &
+program=$!
+for _ in $(seq 100); do
+    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: roam .*px' 2>/dev/null | tail -1)
+    [ -n "$window" ] && break
+    sleep 0.1
+done
+xdotool windowfocus "$window" mousemove 500 400
+sleep 0.5
+xdotool key r && press w && xdotool key r && sleep 0.6
+title | grep -q 'recorded soterrain-flight.csv' || fail "R records nothing: $(title)"
+xdotool key p
+for _ in $(seq 100); do grep -q 'profile in soterrain-replay.csv' "$SCRATCH/replay.err" && break; sleep 0.1; done
+sleep 0.6
+title | grep -q 'played, profile in soterrain-replay.csv' || fail "P does not say where its profile is: $(title)"
+[ "$(wc -l <"$SCRATCH/soterrain-replay.csv")" -ge 3 ] || fail "the profile of the replay has no frames"
+xdotool key Escape
+wait $program || fail "exit status $? after the replay"
+
 # An animation that is profiled ends by itself.
 expect 0 timeout 60 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh -v -s -A 1000 -F 100 -p "$SCRATCH/p.csv"
+expect 0 timeout 60 "$TEST" -h "$SCRATCH/map.raw" -a roam --frames 3 --stats
+grep -q '"frames": 3,' "$SCRATCH/out" || fail "--frames 3 gives $(grep '"frames"' "$SCRATCH/out")"
 rows=$(wc -l <"$SCRATCH/p.csv")
 [ "$rows" -ge 3 ] && [ "$rows" -le 11 ] || fail "the profile of a second in the window has $rows lines"
 finish
