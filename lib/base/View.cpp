@@ -32,7 +32,8 @@ float ScreenSpace::anyScreenError(float error, const Box& box) const
         const float low = std::clamp(t - spread, -1.0f, 1.0f), high = std::clamp(t + spread, -1.0f, 1.0f);
         return std::max(glm::length(glm::vec3(row) - low * glm::vec3(w_)), glm::length(glm::vec3(row) - high * glm::vec3(w_)));
     };
-    return error * glm::length(scale_ * glm::vec2(largest(x_), largest(y_))) / nearestW;
+    const float pixels = error * glm::length(scale_ * glm::vec2(largest(x_), largest(y_))) / nearestW;
+    return pixels == pixels ? pixels : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace terrain

@@ -90,7 +90,8 @@ __attribute__((always_inline)) inline float ScreenSpace::verticalScreenError(flo
     const float horizontal = scale_.x * larger(std::fabs(x_.z - window(tx - spreadX) * w_.z), std::fabs(x_.z - window(tx + spreadX) * w_.z));
     const float vertical = scale_.y * larger(std::fabs(y_.z - window(ty - spreadY) * w_.z), std::fabs(y_.z - window(ty + spreadY) * w_.z));
     const float pixels = error * std::sqrt(horizontal * horizontal + vertical * vertical) * inverseNearest;
-    return nearestW > 0.0f ? pixels : std::numeric_limits<float>::infinity();
+    // An infinite error times a direction that shows none of it is no number.
+    return nearestW > 0.0f && pixels == pixels ? pixels : std::numeric_limits<float>::infinity();
 }
 
 inline float ScreenSpace::screenError(float error, const Box& box) const

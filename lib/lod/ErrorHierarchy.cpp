@@ -155,6 +155,15 @@ State finestState(const SampleGrid& grid, const DiamondShape& d, int half)
     return joined(grid, d, half, {cellIsHole(d.corner[half ? 2 : 0]), cellIsHole(d.corner[half ? 0 : 2])});
 }
 
+/// Code of a finest diamond. `isSolid`: no holes, so that what lies in the grid is full.
+std::uint16_t finestCode(const SampleGrid& grid, const DiamondShape& d, bool isSolid)
+{
+    const auto stateOf = [&](int half) { return isSolid && liesInGrid(grid, d, half) ? Full : finestState(grid, d, half); };
+    const State states[2] = {stateOf(0), stateOf(1)};
+    if (states[0] == Mixed || states[1] == Mixed) return ErrorHierarchy::encode(kInfinity);
+    return states[0] == Full || states[1] == Full ? ErrorHierarchy::encode(finestDeviation(grid, d)) : std::uint16_t(0);
+}
+
 /// Whether triangles lie in the grid's valid part. States of both triangles of a diamond are packed into one byte a sample.
 class Coverage {
 public:
@@ -231,11 +240,11 @@ void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage,
             if (state == Full) deviation = std::max(deviation, triangleDeviation(samples, d, half));
         }
         std::uint16_t code = ErrorHierarchy::encode(deviation);
-        // The centres of finest children are among the samples that their parent covers.
         for (int side = 0; side < 4; ++side) {
             const glm::ivec2 child = d.child(side);
-            const bool isFinest = d.size == 1;
-            if (!isFinest && grid.contains(child.x, child.y)) code = std::max(code, codes[placeOf(child)]);
+            if (!grid.contains(child.x, child.y)) continue;
+            // A finest child's centre is among the samples of the parent, but rounded along another way.
+            code = std::max(code, d.size == 1 && d.isSquare ? finestCode(grid, DiamondShape(child), !coverage.hasHoles()) : codes[placeOf(child)]);
         }
         codes[placeOf(d.centre)] = code;
     });
@@ -273,13 +282,7 @@ float ErrorHierarchy::error(const SampleGrid& grid, const DiamondShape& d) const
         return d.centre.x - d.size < columns_ - 1 && d.centre.y - d.size < rows_ - 1 ? kInfinity : 0.0f;
     }
     if (!d.isFinest()) return decode(codes_[place(d.centre)]);
-    bool isFull = whole_;
-    if (!whole_) {
-        const State states[2] = {finestState(grid, d, 0), finestState(grid, d, 1)};
-        if (states[0] == Mixed || states[1] == Mixed) return kInfinity;
-        isFull = states[0] == Full || states[1] == Full;
-    }
-    return isFull ? decode(encode(finestDeviation(grid, d))) : 0.0f;
+    return decode(finestCode(grid, d, !hasHoles_));
 }
 
 }  // namespace terrain

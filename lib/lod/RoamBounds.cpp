@@ -32,6 +32,8 @@ void growTo(std::vector<T>& items, std::size_t size)
 
 constexpr std::size_t kLanes = RoamBounds::kBlock;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Priority of what is in view though nothing of its error shows: 0 means outside.
+constexpr float kLeast = std::numeric_limits<float>::min();
 
 struct Lanes {
     float x[kLanes], y[kLanes], z[kLanes], halfX[kLanes], halfY[kLanes], halfZ[kLanes];
@@ -104,15 +106,19 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
     for (std::size_t i = 0; i < kLanes; ++i) {
         const float nearest = w.x * b.x[i] + w.y * b.y[i] + w.z * b.z[i] + w.w - reachWx * b.halfX[i] - reachWy * b.halfY[i] -
                               reachWz * b.halfZ[i];
-        priority[i] = outside[i] > 0.0f || error[i] == 0.0f ? 0.0f : priority[i];
+        const float inView = priority[i] > kLeast ? priority[i] : kLeast;
+        priority[i] = outside[i] > 0.0f || error[i] == 0.0f ? 0.0f : inView;
         const float distance = (std::fabs(b.x[i] - eye.x) + b.halfX[i]) * length.x + (std::fabs(b.y[i] - eye.y) + b.halfY[i]) * length.y +
                                (std::fabs(b.z[i] - eye.z) + b.halfZ[i]) * length.z + drift;
-        const float labelFrames = std::fabs(outside[i]) / (planes.shift + planes.turn * distance);
+        // Rates can be 0: then only what has no margin does not last.
+        const float slack = std::fabs(outside[i]);
+        const float labelFrames = slack > 0.0f ? slack / (planes.shift + planes.turn * distance) : 0.0f;
         // Not yet to be split: until w falls to `needed` error. Split and standing still: until it rises to `resting` error. In between,
         // where only the finer bound tells, nothing lasts.
         const float toSplit = nearest - error[i] * needed, toMove = error[i] * resting - nearest;
         const float margin = toSplit > 0.0f ? toSplit : toMove > 0.0f && priority[i] > full ? toMove : 0.0f;
-        const float priorityFrames = outside[i] > 0.0f ? kInfinity : margin / (depth.shift + depth.turn * distance);
+        const float lasting = margin > 0.0f ? margin / (depth.shift + depth.turn * distance) : 0.0f;
+        const float priorityFrames = outside[i] > 0.0f ? kInfinity : lasting;
         frames[i] = error[i] == 0.0f ? kInfinity : labelFrames < priorityFrames ? labelFrames : priorityFrames;
     }
 }
@@ -184,7 +190,7 @@ void RoamBounds::evaluate(std::size_t number, const EvaluationRequest& request)
     if (error == 0.0f)
         priority_[number] = 0.0f;
     else if (!request.space->isOutside(b))
-        priority_[number] = request.space->screenError(error, b);
+        priority_[number] = std::max(kLeast, request.space->screenError(error, b));
     else
         priority_[number] = request.cull ? 0.0f : turnedError(error, b, request);
 }
@@ -193,7 +199,8 @@ float RoamBounds::turnedError(float error, const Box& box, const EvaluationReque
 {
     const glm::vec3 gap = glm::max(glm::abs(box.centre - request.motion->eye()) - box.half, glm::vec3(0.0f));
     const float distance = glm::length(gap * request.motion->unitLength());
-    return error * request.space->largestFactor() / (request.depthAtEye + request.depthPerLength * distance);
+    // Half as fine as what is in view, which so comes first where work is limited.
+    return 0.5f * error * request.space->largestFactor() / (request.depthAtEye + request.depthPerLength * distance);
 }
 
 int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& request)
@@ -210,10 +217,8 @@ int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& reques
         for (std::size_t number = first; number < first + kBlock; ++number)
             if (priority_[number] == 0.0f && error_[number] != 0) priority_[number] = turnedError(ErrorHierarchy::decode(error_[number]), box(number), request);
     float soonest = float(ViewMotion::kLongest);
-    for (const float lasting : frames)
-        if (!(lasting >= soonest)) soonest = lasting;
-    // A camera that stood still gives 0 / 0: nothing is known then.
-    return soonest >= 1.0f ? int(soonest) : 1;
+    for (const float lasting : frames) soonest = std::min(soonest, lasting);
+    return std::max(1, int(soonest));
 }
 
 std::size_t RoamBounds::bytes() const

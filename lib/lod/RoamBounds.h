@@ -14,8 +14,8 @@
 
 namespace terrain {
 
-/// What a selection asks of every block in a frame. Without culling, what is outside of the view has the error that it would have if the
-/// camera turned to it, where depth grows with distance as it does straight ahead.
+/// What a selection asks of every block in a frame. Without culling, what is outside of the view has half the error that it would
+/// have if the camera turned to it, where depth grows with distance as it does straight ahead.
 struct EvaluationRequest {
     const ScreenSpace* space = nullptr;
     const ViewMotion* motion = nullptr;

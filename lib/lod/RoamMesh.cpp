@@ -128,7 +128,7 @@ void RoamMesh::relink(std::uint32_t number, std::uint32_t from, std::uint32_t to
                 if (link == from + half) link = to + half;
 }
 
-void RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
+bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
 {
     const DiamondShape shape(bounds_.centre(number));
     // Both triangles must be there: a parent that is not split yet is split first, and its parents before it (ROAM's forced split).
@@ -136,9 +136,18 @@ void RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
         const glm::ivec2 apex = shape.corner[half ? 3 : 1];
         if (diamonds_[number].parent[half] != kNone || !inSquare(apex)) continue;
         std::uint32_t parent = find(apex);
-        if (parent == kNone) parent = create(grid, DiamondShape(apex));
-        split(grid, parent);
+        if (parent == kNone) {
+            // Its own parents may be split already and have passed it over: beyond the grid an error can be 0 where a child's is not.
+            const DiamondShape parentShape(apex);
+            parent = create(grid, parentShape);
+            linkToParents(parent, parentShape);
+        }
+        if (split(grid, parent)) continue;
+        // No operations are left. What no split diamond refers to must not stay.
+        if (diamonds_[parent].parent[0] == kNone && diamonds_[parent].parent[1] == kNone && parent != root_) destroy(parent);
+        return false;
     }
+    if (operations_ >= operationCap_) return false;
     if (freeLinks_ == kNone) {
         diamonds_[number].links = std::uint32_t(links_.size());
         grow(links_);
@@ -160,6 +169,25 @@ void RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
     ++report_.splits;
     ++operations_;
     if (!shape.isFinest()) adoptChildren(grid, number, shape);
+    return true;
+}
+
+void RoamMesh::link(std::uint32_t parent, unsigned side, std::uint32_t child, const DiamondShape& childShape)
+{
+    const unsigned half = childShape.corner[1] == bounds_.centre(parent) ? 0 : 1;
+    links(parent).child[side] = leafLink(child, half);
+    diamonds_[child].parent[half] = parent;
+}
+
+void RoamMesh::linkToParents(std::uint32_t number, const DiamondShape& shape)
+{
+    for (const std::size_t apex : {1u, 3u}) {
+        const std::uint32_t parent = inSquare(shape.corner[apex]) ? find(shape.corner[apex]) : kNone;
+        if (parent == kNone || !isSplit(parent)) continue;
+        const DiamondShape parentShape(shape.corner[apex]);
+        for (unsigned side = 0; side < 4; ++side)
+            if (parentShape.child(int(side)) == shape.centre) link(parent, side, number, shape);
+    }
 }
 
 void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape)
@@ -174,9 +202,7 @@ void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const
             if (!(model_.errors->error(grid, childShape) > 0.0f)) continue;
             child = create(grid, childShape);
         }
-        const unsigned half = childShape.corner[1] == shape.centre ? 0 : 1;
-        links(number).child[std::size_t(side)] = leafLink(child, half);
-        diamonds_[child].parent[half] = number;
+        link(number, unsigned(side), child, childShape);
     }
 }
 

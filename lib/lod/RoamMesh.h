@@ -89,7 +89,10 @@ private:
     std::uint32_t create(const SampleGrid& grid, const DiamondShape& shape);
     void destroy(std::uint32_t number);
     void bound(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number);
-    void split(const SampleGrid& grid, std::uint32_t number);
+    /// Splits what must be split before, too; false when the operations ran out on the way.
+    bool split(const SampleGrid& grid, std::uint32_t number);
+    void link(std::uint32_t parent, unsigned side, std::uint32_t child, const DiamondShape& childShape);
+    void linkToParents(std::uint32_t number, const DiamondShape& shape);
     void adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape);
     void merge(std::uint32_t number);
     bool isSplit(std::uint32_t number) const { return diamonds_[number].links != kNone; }
@@ -166,6 +169,7 @@ private:
     bool mayDefer_ = false;  ///< false: every diamond is evaluated in this frame
     std::vector<Candidate> splitQueue_, mergeQueue_;
     std::uint32_t operations_ = 0;
+    std::uint32_t operationCap_ = 0;  ///< splits stop here
     SelectionReport report_;
     bool positionsChanged_ = false;
     std::vector<std::uint32_t> moving_;  ///< split diamonds with t < 1, coarse ones first

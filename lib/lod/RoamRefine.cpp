@@ -145,6 +145,10 @@ bool RoamMesh::makeRoom(const Candidate& candidate)
 {
     while (meshTriangles_ + triangleCost(candidate.diamond) > settings_.triangleBudget) {
         if (mergeQueue_.empty() || !(mergeQueue_.front().priority < candidate.priority)) return false;
+        if (operations_ >= operationCap_) {
+            report_.converged = false;
+            return false;
+        }
         std::pop_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
         const Candidate lowest = mergeQueue_.back();
         mergeQueue_.pop_back();
@@ -168,21 +172,20 @@ void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit)
         if (isCurrent(lowest) && isMergeable(lowest.diamond)) mergeAndQueueParents(lowest.diamond);
     }
     // A quarter of the operations is kept for merges, so that a mesh in flight does not only grow.
-    const std::uint32_t splitLimit = limit - std::min(limit / 4, std::uint32_t(mergeQueue_.size()));
+    operationCap_ = limit - std::min(limit / 4, std::uint32_t(mergeQueue_.size()));
     while (!splitQueue_.empty()) {
         const Candidate candidate = splitQueue_.front();
         if (isCurrent(candidate) && !isSplit(candidate.diamond)) {
-            if (operations_ >= splitLimit) {
-                report_.converged = false;
-                break;
-            }
             if (budget > 0 && !makeRoom(candidate)) break;
         }
         // Making room may have changed the queue, but never its top.
         std::pop_heap(splitQueue_.begin(), splitQueue_.end(), kHighestFirst);
         splitQueue_.pop_back();
         if (!isCurrent(candidate) || isSplit(candidate.diamond)) continue;
-        split(grid, candidate.diamond);
+        if (!split(grid, candidate.diamond)) {
+            report_.converged = false;
+            break;
+        }
         if (budget > 0) enqueue(candidate.diamond);
     }
     coarsen(limit);
