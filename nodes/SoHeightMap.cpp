@@ -168,6 +168,8 @@ void SoHeightMap::notify(SoNotList * list)
 {
     pimpl->isStale = true;
     if (list->getLastField() == &this->filename) pimpl->path = "";
+    // Coin can't read NaN from a file, and need not: it is the default.
+    if (list->getLastField() == &this->noData && std::isnan(this->noData.getValue())) this->noData.setDefault(TRUE);
     inherited::notify(list);
 }
 

@@ -58,6 +58,7 @@
 
 #include "SoTerrainShapeP.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -189,8 +190,10 @@ terrain::LodSettings SoTerrainShape::Private::settingsFor(SoState * state, const
 {
     terrain::LodSettings settings;
     const float pixels = master->pixelError.getValue();
+    // However much is allowed, what can't be drawn coarsely is not.
+    constexpr float kLargest = 1e30f;
     if (pixels >= 0.0f)
-        settings.pixelError = pixels;
+        settings.pixelError = std::min(pixels, kLargest);
     else
         master->warnOnce(("pixelError: expected 0 or more pixels, found " + std::to_string(pixels) + "; 2 is taken").c_str());
     settings.pixelError *= std::exp2(4.0f * (0.5f - SoComplexityElement::get(state)));
@@ -236,6 +239,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     SoMaterialBundle materials(action);
     materials.sendFirst();
     const StateAttributes attributes(action, data->grid, true);
+    for (const std::string & problem : attributes.problems()) master->warnOnce(problem.c_str());
     if (!master->freeze.getValue() || !view.hasMesh) select(view, state, *data, attributes);
 
     const Clock::time_point start = Clock::now();

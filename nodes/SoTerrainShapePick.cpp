@@ -18,6 +18,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "ParentNode.h"
 #include "StateAttributes.h"
 #include "lod/BruteForceMesh.h"
 #include "lod/RayCast.h"
@@ -170,14 +171,7 @@ SoCallbackAction::Response askAtNode(void * closure, SoCallbackAction * action, 
 SoPath * pathFromTop(SoNode * node)
 {
     SoNodeList chain;
-    for (SoNode * at = node; at;) {
-        chain.insert(at, 0);
-        SoNode * parent = NULL;
-        const SoAuditorList & auditors = at->getAuditors();
-        for (int i = 0; i < auditors.getLength() && !parent; ++i)
-            if (auditors.getType(i) == SoNotRec::PARENT) parent = static_cast<SoNode *>(auditors.getObject(i));
-        at = parent;
-    }
+    for (SoNode * at = node; at; at = parentOf(at)) chain.insert(at, 0);
     SoPath * path = new SoPath(chain[0]);
     for (int i = 1; i < chain.getLength(); ++i) path->append(chain[i]);
     return path;

@@ -24,22 +24,40 @@ StateAttributes::StateAttributes(SoAction * action, const terrain::SampleGrid & 
     readTextures(state, forGL);
 }
 
+long StateAttributes::countFor(Binding binding) const
+{
+    const long columns = grid_.columns(), rows = grid_.rows();
+    switch (binding) {
+    case PER_ROW: return rows - 1;
+    case PER_FACE: return (columns - 1) * (rows - 1);
+    case PER_VERTEX: return columns * rows;
+    default: return 1;
+    }
+}
+
+bool StateAttributes::isEnough(const char * what, Binding binding, long found, const char * remedy)
+{
+    const long expected = countFor(binding);
+    if (found >= expected) return true;
+    problems_.push_back(std::string(what) + ": expected " + std::to_string(expected) + ", found " + std::to_string(found) + "; " + remedy);
+    return false;
+}
+
 void StateAttributes::readNormals(SoState * state)
 {
     const SoNormalElement * element = SoNormalElement::getInstance(state);
     normalCount_ = element->getNum();
     if (normalCount_ > 0) {
         normals_ = element->getArrayPtr();
-        const long samples = long(grid_.columns()) * grid_.rows();
         switch (SoNormalBindingElement::get(state)) {
         case SoNormalBindingElement::OVERALL: normalBinding_ = OVERALL; break;
         case SoNormalBindingElement::PER_PART:
         case SoNormalBindingElement::PER_PART_INDEXED: normalBinding_ = PER_ROW; break;
         case SoNormalBindingElement::PER_FACE:
         case SoNormalBindingElement::PER_FACE_INDEXED: normalBinding_ = PER_FACE; break;
-        // Too few normals for the samples: better our own than somebody else's memory.
-        default: normalBinding_ = normalCount_ >= samples ? PER_VERTEX : GENERATED; break;
+        default: normalBinding_ = PER_VERTEX; break;
         }
+        if (!isEnough("normals", normalBinding_, normalCount_, "the terrain computes its own")) normalBinding_ = GENERATED;
         mix(element->getNodeId());
     }
     mix(normalBinding_);
@@ -58,6 +76,7 @@ void StateAttributes::readMaterials(SoState * state)
     default: materialBinding_ = PER_VERTEX; break;
     }
     if (lazy_->getNumDiffuse() <= 1) materialBinding_ = OVERALL;
+    isEnough("materials", materialBinding_, lazy_->getNumDiffuse(), "the last one serves for the rest");
     format_.colours = materialBinding_ != OVERALL;
     if (format_.colours) mix(LazyElementAccess::colourId(lazy_));
     mix(materialBinding_);
@@ -75,6 +94,8 @@ void StateAttributes::readTextures(SoState * state, bool forGL)
         mix(std::uint64_t(type) + std::uint64_t(unit) * 16);
         // Functions are GL's own texture coordinate generation: it needs no coordinates from us.
         if (type == SoMultiTextureCoordinateElement::FUNCTION || type == SoMultiTextureCoordinateElement::TEXGEN) continue;
+        if (type == SoMultiTextureCoordinateElement::EXPLICIT)
+            isEnough("texture coordinates", PER_VERTEX, textureCoordinates_->getNum(unit), "the rest span the terrain");
         format_.textureUnits.push_back(unit);
         mix(TextureCoordinateElementAccess::unitId(textureCoordinates_, unit));
     }

@@ -2,6 +2,9 @@
 #ifndef SOTERRAIN_STATEATTRIBUTES_H
 #define SOTERRAIN_STATEATTRIBUTES_H
 
+#include <string>
+#include <vector>
+
 #include <Inventor/SbVec2f.h>
 #include <Inventor/SbVec3f.h>
 
@@ -26,6 +29,9 @@ public:
     std::uint64_t version() const override { return version_; }
     void write(std::uint32_t sample, std::uint8_t * out) const override;
 
+    /// What the state has too few of, and what is done about it.
+    const std::vector<std::string> & problems() const { return problems_; }
+
     /// Lighting is on and all vertices have the one normal().
     bool hasOverallNormal() const { return needsNormals_ && !format_.normals; }
     bool hasExplicitNormals() const { return normalBinding_ != GENERATED; }
@@ -40,6 +46,8 @@ private:
     void readNormals(SoState * state);
     void readMaterials(SoState * state);
     void readTextures(SoState * state, bool forGL);
+    long countFor(Binding binding) const;
+    bool isEnough(const char * what, Binding binding, long found, const char * remedy);
     int boundIndex(Binding binding, int column, int row, int count) const;
     SbVec3f generatedNormal(int column, int row) const;
     void mix(std::uint64_t value) { version_ = (version_ ^ value) * 0x100000001b3ull; }
@@ -47,6 +55,7 @@ private:
     const terrain::SampleGrid & grid_;
     terrain::VertexFormat format_;
     std::uint64_t version_ = 0xcbf29ce484222325ull;
+    std::vector<std::string> problems_;
     bool needsNormals_ = true;
     Binding normalBinding_ = GENERATED;
     Binding materialBinding_ = OVERALL;
