@@ -4,7 +4,7 @@
 
   Every sample is a vertex in a static buffer and the whole terrain is one draw call. It is what the other terrain nodes are compared
   with, and the right node for small grids: there is nothing to choose, so the traversing thread has nothing to do. Each vertex takes
-  12 bytes for its position, 8 for its normal, 4 for its colour and 8 for each texture unit, as far as they are used, and each
+  12 bytes for its position, 12 for its normal, 4 for its colour and 8 for each texture unit, as far as they are used, and each
   cell 24 bytes of indices.
 
   Sources, order of points and bindings are those of SoTerrainShape.

@@ -34,7 +34,7 @@
       freeze FALSE
       alternateRep NULL
       triangleCount 0
-      geomorph TRUE
+      geomorph FALSE
       operationCount 10000
     }
   \endcode
@@ -50,7 +50,7 @@
 /*!
   \var SoSFBool SoROAMTerrain::geomorph
   Whether vertices slide in and out instead of popping. Refinement begins at 0.9 pixelError then, so that the error stays within
-  pixelError while they move, which takes about a fifth more triangles. Default TRUE.
+  pixelError while they move, which takes about a fifth more triangles. Default FALSE: what pops, pops by no more than pixelError.
 */
 /*!
   \var SoSFInt32 SoROAMTerrain::operationCount
@@ -76,7 +76,7 @@ SoROAMTerrain::SoROAMTerrain()
 {
     SO_NODE_CONSTRUCTOR(SoROAMTerrain);
     SO_NODE_ADD_FIELD(triangleCount, (0));
-    SO_NODE_ADD_FIELD(geomorph, (TRUE));
+    SO_NODE_ADD_FIELD(geomorph, (FALSE));
     SO_NODE_ADD_FIELD(operationCount, (10000));
 }
 

@@ -155,11 +155,8 @@ void StateAttributes::write(std::uint32_t sample, std::uint8_t * out) const
     const int column = int(sample % std::uint32_t(grid_.columns())), row = int(sample / std::uint32_t(grid_.columns()));
     if (format_.normals) {
         const SbVec3f n = normal(column, row);
-        std::int16_t packed[4] = {0, 0, 0, 0};
-        for (int axis = 0; axis < 3; ++axis)
-            packed[axis] = std::int16_t(std::lrintf(std::clamp(n[axis], -1.0f, 1.0f) * 32767.0f));
-        std::memcpy(out, packed, sizeof packed);
-        out += sizeof packed;
+        std::memcpy(out, n.getValue(), 3 * sizeof(float));
+        out += 3 * sizeof(float);
     }
     if (format_.colours) {
         const int index = materialIndex(column, row);

@@ -94,8 +94,8 @@ void TerrainRenderer::draw() const
     if (stride > 0) attributes_.bind(GL_ARRAY_BUFFER);
     if (format_.normals) {
         glEnableClientState(GL_NORMAL_ARRAY);
-        glNormalPointer(GL_SHORT, stride, offset(at));
-        at += 8;
+        glNormalPointer(GL_FLOAT, stride, offset(at));
+        at += 12;
     }
     if (format_.colours) {
         glEnableClientState(GL_COLOR_ARRAY);

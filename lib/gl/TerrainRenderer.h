@@ -11,14 +11,14 @@
 
 namespace terrain {
 
-/// What a vertex carries beside its position. Interleaved in this order: normal (four 16-bit integers, the last unused), colour (four
+/// What a vertex carries beside its position. Interleaved in this order: normal (three floats), colour (four
 /// bytes), then two floats for each texture unit.
 struct VertexFormat {
     bool normals = false;
     bool colours = false;
     std::vector<int> textureUnits;  ///< those that get explicit coordinates
 
-    std::size_t stride() const { return (normals ? 8u : 0u) + (colours ? 4u : 0u) + textureUnits.size() * 8u; }
+    std::size_t stride() const { return (normals ? 12u : 0u) + (colours ? 4u : 0u) + textureUnits.size() * 8u; }
     bool operator==(const VertexFormat&) const = default;
 };
 

@@ -16,7 +16,7 @@ struct LodSettings {
     std::uint32_t triangleBudget = 0;  ///< hard limit on the triangles of the mesh; 0: none
     std::uint32_t operationLimit = 0;  ///< most splits and merges of a selection but the first; 0: no limit
     bool cull = true;                  ///< leave out what is outside of the view volume, and do not refine it
-    bool geomorph = true;              ///< let vertices slide between the coarse and the fine surface
+    bool geomorph = false;             ///< let vertices slide between the coarse and the fine surface
     bool clockwise = false;            ///< orientation of the triangles in the grid's (column, row) plane
 
     bool operator==(const LodSettings&) const = default;

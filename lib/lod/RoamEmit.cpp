@@ -7,55 +7,79 @@
 
 namespace terrain {
 
-void RoamMesh::put(std::uint32_t a, std::uint32_t b, std::uint32_t c)
-{
-    // Only a triangle outside of the grid or in a hole has a corner that does not exist.
-    if (!whole_ && (a == kNoVertex || b == kNoVertex || c == kNoVertex)) return;
-    out_[0] = a;
-    out_[1] = settings_.clockwise ? c : b;
-    out_[2] = settings_.clockwise ? b : c;
-    out_ += 3;
-}
+/// One walk over the triangles. It writes through a pointer that it hands from call to call, so that it stays in a register; what need not be
+/// asked for each triangle is a template parameter.
+template <bool Whole, bool Clockwise>
+class RoamMesh::Emitter {
+public:
+    explicit Emitter(const RoamMesh& mesh) : mesh_(mesh), links_(mesh.links_.data()) {}
 
-void RoamMesh::emitHalfCells(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
-{
-    if (split.solidCells == 0xf) {
-        put(apex, split.vertex, first);
-        put(last, split.vertex, apex);
-        return;
+    std::uint32_t* put(std::uint32_t* out, std::uint32_t a, std::uint32_t b, std::uint32_t c) const
+    {
+        // Only a triangle outside of the grid or in a hole has a corner that does not exist.
+        if (!Whole && (a == kNoVertex || b == kNoVertex || c == kNoVertex)) return out;
+        out[0] = a;
+        out[1] = Clockwise ? c : b;
+        out[2] = Clockwise ? b : c;
+        return out + 3;
     }
-    // Without a centre there is no solid cell around it.
-    if (split.vertex == kNoVertex) return;
-    const int sample = int(samples_[split.vertex]);
-    const DiamondShape shape({sample % columns_, sample / columns_});
-    const glm::ivec2 toApex = shape.corner[half ? 3 : 1] - shape.centre;
-    const auto isSolid = [&](std::size_t end) {
-        const glm::ivec2 toCell = toApex + shape.corner[end] - shape.centre;
-        return (split.solidCells >> cellBit(toCell.x, toCell.y) & 1) != 0;
-    };
-    if (isSolid(half ? 2 : 0)) put(apex, split.vertex, first);
-    if (isSolid(half ? 0 : 2)) put(last, split.vertex, apex);
-}
 
-void RoamMesh::emitLink(std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
-{
-    if (link == kNone)
-        put(first, apex, last);
-    else if (link & kSplitLink)
-        emitSplit(links_[(link & ~kSplitLink) / 2], link % 2, first, apex, last);
-    else if (bounds_.priority(link / 2) > 0.0f)
-        put(first, apex, last);
-}
-
-void RoamMesh::emitSplit(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last)
-{
-    if (split.finest) {
-        emitHalfCells(split, half, first, apex, last);
-        return;
+    std::uint32_t* link(std::uint32_t* out, std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const
+    {
+        if (link != kNone) {
+            if (link & kSplitLink) return split(out, links_[(link & ~kSplitLink) / 2], link % 2, first, apex, last);
+            if (mesh_.bounds_.priority(link / 2) == 0.0f) return out;
+        }
+        return put(out, first, apex, last);
     }
-    // The middle is the apex of both halves.
-    emitLink(split.child[2 * half], apex, split.vertex, first);
-    emitLink(split.child[2 * half + 1], last, split.vertex, apex);
+
+private:
+    std::uint32_t* split(std::uint32_t* out, const Links& d, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const
+    {
+        if (d.finest) return halfCells(out, d, half, first, apex, last);
+        const std::uint32_t left = d.child[2 * half], right = d.child[2 * half + 1], middle = d.vertex;
+        if (right != kNone && (right & kSplitLink)) __builtin_prefetch(&links_[(right & ~kSplitLink) / 2]);
+        // The middle is the apex of both halves.
+        out = link(out, left, apex, middle, first);
+        return link(out, right, last, middle, apex);
+    }
+
+    std::uint32_t* halfCells(std::uint32_t* out, const Links& d, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const
+    {
+        if (Whole || d.solidCells == 0xf) return put(put(out, apex, d.vertex, first), last, d.vertex, apex);
+        // Without a centre there is no solid cell around it.
+        if (d.vertex == kNoVertex) return out;
+        const int sample = int(mesh_.samples_[d.vertex]);
+        const DiamondShape shape({sample % mesh_.columns_, sample / mesh_.columns_});
+        const glm::ivec2 toApex = shape.corner[half ? 3 : 1] - shape.centre;
+        const auto isSolid = [&](std::size_t end) {
+            const glm::ivec2 toCell = toApex + shape.corner[end] - shape.centre;
+            return (d.solidCells >> cellBit(toCell.x, toCell.y) & 1) != 0;
+        };
+        if (isSolid(half ? 2 : 0)) out = put(out, apex, d.vertex, first);
+        if (isSolid(half ? 0 : 2)) out = put(out, last, d.vertex, apex);
+        return out;
+    }
+
+    const RoamMesh& mesh_;
+    const Links* links_;
+};
+
+template <bool Whole, bool Clockwise>
+std::uint32_t* RoamMesh::emitAll(std::uint32_t* out) const
+{
+    const Emitter<Whole, Clockwise> emitter(*this);
+    const auto [c0, c1, c2, c3] = corners_;
+    if (root_ != kNone) {
+        const auto link = [this](unsigned half) {
+            return isSplit(root_) ? splitLink(diamonds_[root_].links, half) : leafLink(root_, half);
+        };
+        out = emitter.link(out, link(0), c2, c3, c0);
+        return emitter.link(out, link(1), c0, c1, c2);
+    }
+    // One cell, or a flat square: cut as the full resolution is.
+    if (c0 == kNoVertex || c1 == kNoVertex || c2 == kNoVertex || c3 == kNoVertex) return out;
+    return emitter.put(emitter.put(out, c0, c1, c3), c1, c2, c3);
 }
 
 void RoamMesh::emit()
@@ -64,28 +88,19 @@ void RoamMesh::emit()
     const std::size_t most = std::size_t(meshTriangles_) * 3;
     if (most > indices_.capacity()) indices_.reserve(most + most / 8);
     indices_.resize(most);
-    out_ = indices_.data();
-    const auto [c0, c1, c2, c3] = corners_;
-    if (root_ != kNone) {
-        const auto link = [this](unsigned half) {
-            return isSplit(root_) ? splitLink(diamonds_[root_].links, half) : leafLink(root_, half);
-        };
-        emitLink(link(0), c2, c3, c0);
-        emitLink(link(1), c0, c1, c2);
-    } else if (c0 != kNoVertex && c1 != kNoVertex && c2 != kNoVertex && c3 != kNoVertex) {
-        put(c2, c3, c0);
-        put(c0, c1, c2);
-    }
-    indices_.resize(std::size_t(out_ - indices_.data()));
+    std::uint32_t* const begin = indices_.data();
+    const std::uint32_t* const end = whole_ ? (settings_.clockwise ? emitAll<true, true>(begin) : emitAll<true, false>(begin))
+                                            : (settings_.clockwise ? emitAll<false, true>(begin) : emitAll<false, false>(begin));
+    indices_.resize(std::size_t(end - begin));
     report_.triangles = std::uint32_t(indices_.size() / 3);
 }
 
 void RoamMesh::boundError()
 {
+    float worst = leafError_;
+    for (const Candidate& left : splitQueue_)
+        if (isCurrent(left) && !isSplit(left.diamond)) worst = std::max(worst, left.priority);
     // A deferred priority is known only not to exceed the threshold.
-    float worst = 0.0f;
-    for (std::uint32_t number = 0; number < bounds_.size(); ++number)
-        if (!isSplit(number)) worst = std::max(worst, bounds_.priority(number));
     report_.errorPixels = worst > 0.0f && mayDefer_ ? std::max(worst, request_.threshold) : worst;
 }
 

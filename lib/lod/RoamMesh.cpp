@@ -225,6 +225,7 @@ void RoamMesh::merge(std::uint32_t number)
     links(number).child[0] = freeLinks_;
     freeLinks_ = diamonds_[number].links;
     diamonds_[number].links = kNone;
+    leafError_ = std::max(leafError_, bounds_.priority(number));
     ++report_.merges;
     ++operations_;
 }

@@ -124,10 +124,10 @@ private:
 
     // RoamEmit.cpp: triangles and morphs
     void emit();
-    void emitLink(std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
-    void emitSplit(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
-    void emitHalfCells(const Links& split, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last);
-    void put(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+    template <bool Whole, bool Clockwise>
+    class Emitter;
+    template <bool Whole, bool Clockwise>
+    std::uint32_t* emitAll(std::uint32_t* out) const;
     void boundError();
     void morph();
     void collectMoving(float full);
@@ -157,7 +157,6 @@ private:
     std::uint32_t freeVertex_ = kNone;  ///< first of a list through edge[0]
     std::vector<std::uint32_t> newVertices_;
     std::vector<std::uint32_t> indices_;
-    std::uint32_t* out_ = nullptr;  ///< where emit() writes the next index
 
     // One selection
     View view_;
@@ -168,6 +167,7 @@ private:
     EvaluationRequest request_;
     bool mayDefer_ = false;  ///< false: every diamond is evaluated in this frame
     std::vector<Candidate> splitQueue_, mergeQueue_;
+    float leafError_ = 0.0f;  ///< largest priority of what is not split, but for those left in splitQueue_
     std::uint32_t operations_ = 0;
     std::uint32_t operationCap_ = 0;  ///< splits stop here
     SelectionReport report_;

@@ -81,6 +81,8 @@ void RoamMesh::enqueue(std::uint32_t number)
         if (candidate.priority > splitThreshold()) {
             splitQueue_.push_back(candidate);
             std::push_heap(splitQueue_.begin(), splitQueue_.end(), kHighestFirst);
+        } else {
+            leafError_ = std::max(leafError_, candidate.priority);
         }
     } else if (isMergeable(number) && (settings_.triangleBudget > 0 || candidate.priority <= splitThreshold())) {
         mergeQueue_.push_back(candidate);
@@ -92,7 +94,10 @@ void RoamMesh::gather(std::uint32_t number)
 {
     const float priority = bounds_.priority(number);
     if (!isSplit(number)) {
-        if (priority > request_.threshold) splitQueue_.push_back({priority, number});
+        if (priority > request_.threshold)
+            splitQueue_.push_back({priority, number});
+        else
+            leafError_ = std::max(leafError_, priority);
     } else if ((priority <= request_.threshold || settings_.triangleBudget > 0) && isMergeable(number)) {
         mergeQueue_.push_back({priority, number});
     }
@@ -103,6 +108,7 @@ void RoamMesh::update()
     const ProfileScope scope("roam: evaluate");
     splitQueue_.clear();
     mergeQueue_.clear();
+    leafError_ = 0.0f;
     for (std::size_t block = 0; block < bounds_.blocks(); ++block) {
         if (mayDefer_ && due_[block] != frame_) continue;
         due_[block] = std::uint16_t(frame_ + bounds_.evaluateBlock(block, request_));
@@ -183,6 +189,8 @@ void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit)
         splitQueue_.pop_back();
         if (!isCurrent(candidate) || isSplit(candidate.diamond)) continue;
         if (!split(grid, candidate.diamond)) {
+            // It stays what it is, and counts as such.
+            leafError_ = std::max(leafError_, candidate.priority);
             report_.converged = false;
             break;
         }

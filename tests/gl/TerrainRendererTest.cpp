@@ -35,7 +35,7 @@ public:
     void write(std::uint32_t sample, std::uint8_t* out) const override
     {
         if (format_.normals) {
-            const std::int16_t normal[4] = {0, 0, 32767, 0};
+            const float normal[3] = {0.0f, 0.0f, 1.0f};
             std::memcpy(out, normal, sizeof normal);
             out += sizeof normal;
         }

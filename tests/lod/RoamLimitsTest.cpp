@@ -205,6 +205,7 @@ TEST(RoamMesh, GeomorphKeepsVerticesOffTheirSamplesOnTheirWay)
     const SampleGrid grid = terrain.grid();
     LodSettings settings;
     settings.pixelError = 4.0f;
+    settings.geomorph = true;
     RoamMesh mesh(terrain.model(), grid);
     int morphing = 0;
     for (int i = 0; i < 20; ++i) {
