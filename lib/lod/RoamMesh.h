@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -21,13 +20,14 @@ namespace terrain {
 /// ROAM (Duchaineau, Wolinsky, Sigeti, Miller, Aldrich, Mineev-Weinstein: "ROAMing Terrain: Real-time Optimally Adapting Meshes",
 /// Visualization 1997) over diamonds: a split queue of the diamonds that can be split, a merge queue of the split ones whose children
 /// are not (sect. 4), forced splits for a mesh without cracks (fig. 3), frustum labels and priorities that are kept for as long as the
-/// camera's motion can't have changed them (sect. 6.2 and 6.3; ViewMotion.h), a triangle budget met by splitting at the top of one queue and merging at the bottom of the other (sect. 5). Priorities are screen
-/// errors (View.h) of the exact hierarchy (ErrorHierarchy.h) instead of nested wedgies.
+/// camera's motion can't have changed them (sect. 6.2 and 6.3; ViewMotion.h), a triangle budget met by splitting at the top of one queue
+/// and merging at the bottom of the other (sect. 5). Priorities are screen errors (View.h) of the exact hierarchy (ErrorHierarchy.h)
+/// instead of nested wedgies.
 ///
 /// Geomorph. The vertex m of a split diamond with longest edge a-b stands at (a + b) / 2 + t (M - (A + B) / 2): capitals are the true
 /// positions, small letters the drawn ones, and t goes from 0 to 1 while the diamond's screen error goes from `kMorphStart` pixelError
 /// to pixelError. Where t never grows from parent to child, that surface is an average of the meshes { diamonds with t >= x are
-/// split } over x in [0, 1], each of which keeps the error within pixelError, so the average does as well. update() raises the t of a
+/// split } over x in [0, 1], each of which keeps the error within pixelError, so the average does as well. morph() raises the t of a
 /// parent to that of its children where the order would not hold by itself.
 ///
 /// The mesh keeps no pointer to samples: select() is given them.
@@ -36,6 +36,8 @@ public:
     static constexpr float kMorphStart = 0.9f;
 
     RoamMesh(const TerrainModel& model, const SampleGrid& grid);
+    RoamMesh(const RoamMesh&) = delete;
+    RoamMesh& operator=(const RoamMesh&) = delete;
 
     /// Adapts the mesh to a view. The first call refines until the view's error is met; later ones stop at the operation limit and say so.
     /// The same calls in the same order give the same results.
@@ -44,7 +46,6 @@ public:
     /// Triangles of the whole mesh, those outside of the view included.
     std::uint32_t meshTriangles() const { return meshTriangles_; }
     std::size_t bytes() const override;
-    std::size_t diamondCount() const { return diamonds_.size() - freeCount_; }
 
 private:
     static constexpr std::uint32_t kNone = DiamondTable::kNone;
