@@ -13,13 +13,11 @@ constexpr Algorithm table[] = {
 
 }  // namespace
 
-std::span<const Algorithm> algorithms()
-{
+std::span<const Algorithm> algorithms() {
     return table;
 }
 
-const Algorithm* findAlgorithm(std::string_view name)
-{
+const Algorithm* findAlgorithm(std::string_view name) {
     // The first SoTerrain spelled it so, and its users' scripts may still.
     if (name == "brutalforce") name = "bruteforce";
     for (const Algorithm& algorithm : table) {
@@ -28,8 +26,7 @@ const Algorithm* findAlgorithm(std::string_view name)
     return nullptr;
 }
 
-std::string algorithmNames()
-{
+std::string algorithmNames() {
     std::string names;
     for (const Algorithm& algorithm : table) names += (names.empty() ? "" : ", ") + std::string(algorithm.name);
     return names;

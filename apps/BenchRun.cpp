@@ -53,16 +53,14 @@ namespace {
 constexpr int width = 1024;
 constexpr int height = 768;
 
-double threadCpuMs()
-{
+double threadCpuMs() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
 }
 
 // Resident set of this process; 0 where the system does not tell.
-double residentBytes()
-{
+double residentBytes() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
         if (line.starts_with("VmRSS:")) return 1024.0 * std::atof(line.c_str() + 6);
@@ -71,8 +69,7 @@ double residentBytes()
 }
 
 // The map with its rows in the order of the file.
-Result<TerrainGrid> openTopFirst(const std::string& path)
-{
+Result<TerrainGrid> openTopFirst(const std::string& path) {
     auto source = terrain::openHeightFile(path, {});
     if (!source) return source.error();
     const terrain::HeightMap* resident = source.value()->map();
@@ -121,8 +118,7 @@ private:
     TerrainGrid grid_;
 };
 
-std::optional<Error> Bench::prepare()
-{
+std::optional<Error> Bench::prepare() {
     auto grid = openTopFirst(request_.map);
     if (!grid) return grid.error();
     grid_ = std::move(grid).value();
@@ -137,8 +133,7 @@ std::optional<Error> Bench::prepare()
     return makeNode();
 }
 
-std::optional<Error> Bench::addData()
-{
+std::optional<Error> Bench::addData() {
     root_ = NodePtr(new SoSeparator);
     root_->renderCaching = SoSeparator::OFF;
     root_->addChild(group_ = new SoSeparator);
@@ -166,8 +161,7 @@ std::optional<Error> Bench::addData()
     return std::nullopt;
 }
 
-std::optional<Error> Bench::makeNode()
-{
+std::optional<Error> Bench::makeNode() {
     const std::string& name = request_.className;
     if (name == "SoIndexedFaceSet") {
         node_ = NodePtr<SoNode>(makeFaceSet(grid_));
@@ -189,8 +183,7 @@ std::optional<Error> Bench::makeNode()
 }
 
 // Draws frame i of the flight; returns milliseconds until GL has finished.
-double Bench::frame(int i)
-{
+double Bench::frame(int i) {
     const Pose pose = flight_.at(double(i) / request_.frames);
     const double start = nowMs();
     camera_->position = pose.position;
@@ -203,8 +196,7 @@ double Bench::frame(int i)
 }
 
 // Two triangles over the same state, so that the texture's upload and the driver's start are not the node's.
-void Bench::warmUp()
-{
+void Bench::warmUp() {
     auto* triangles = new SoIndexedTriangleStripSet;
     const int32_t corners[] = {0, grid_.columns - 1, grid_.columns * (grid_.rows - 1), SO_END_STRIP_INDEX};
     triangles->coordIndex.setValues(0, 4, corners);
@@ -215,8 +207,7 @@ void Bench::warmUp()
     group_->addChild(node_.get());
 }
 
-void Bench::measureStart(ordered_json& out)
-{
+void Bench::measureStart(ordered_json& out) {
     const double before = residentBytes();
     const double first = frame(0), second = frame(0);
     out["start_ms"] = std::max(0.0, first - second);
@@ -227,14 +218,12 @@ void Bench::measureStart(ordered_json& out)
     out["buffer_bytes"] = statistics.bufferBytes;
 }
 
-ordered_json toJson(const std::vector<double>& values)
-{
+ordered_json toJson(const std::vector<double>& values) {
     const Summary s = summarize(values);
     return {{"median", s.median}, {"p95", s.p95}, {"worst", s.worst}};
 }
 
-void Bench::measureFrames(ordered_json& out)
-{
+void Bench::measureFrames(ordered_json& out) {
     std::vector<double> ms;
     double bound = 0.0;
     for (int i = 0; i < request_.frames; ++i) {
@@ -246,8 +235,7 @@ void Bench::measureFrames(ordered_json& out)
     out["frame_ms"] = toJson(ms);
 }
 
-void Bench::measureCpu(ordered_json& out)
-{
+void Bench::measureCpu(ordered_json& out) {
     std::vector<double> ms;
     glEnable(GL_RASTERIZER_DISCARD);
     frame(0);
@@ -260,8 +248,7 @@ void Bench::measureCpu(ordered_json& out)
     out["cpu_ms"] = toJson(ms);
 }
 
-void Bench::measureTriangles(ordered_json& out)
-{
+void Bench::measureTriangles(ordered_json& out) {
     // GL counts a quad as one primitive.
     const double perPrimitive = node_->isOfType(SoQuadMesh::getClassTypeId()) ? 2.0 : 1.0;
     std::vector<double> triangles;
@@ -282,8 +269,7 @@ void Bench::measureTriangles(ordered_json& out)
     out["triangles"] = summarize(triangles).mean;
 }
 
-std::optional<Error> Bench::measureError(ordered_json& out)
-{
+std::optional<Error> Bench::measureError(ordered_json& out) {
     ErrorMeter meter(grid_, group_, node_.get());
     ErrorSample all;
     frame(0);
@@ -302,8 +288,7 @@ std::optional<Error> Bench::measureError(ordered_json& out)
 
 }  // namespace
 
-Result<ordered_json> runBench(const BenchRequest& request)
-{
+Result<ordered_json> runBench(const BenchRequest& request) {
     Bench bench(request);
     if (auto problem = bench.prepare()) return *problem;
     ordered_json out;

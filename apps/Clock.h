@@ -6,8 +6,7 @@
 namespace app {
 
 /// Milliseconds of a clock that only goes forward.
-inline double nowMs()
-{
+inline double nowMs() {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     return std::chrono::duration<double, std::milli>(now).count();
 }

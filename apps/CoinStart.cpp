@@ -14,16 +14,14 @@ namespace {
 
 SoErrorCB* defaultHandler = nullptr;
 
-void passOn(const SoError* error, void* data)
-{
+void passOn(const SoError* error, void* data) {
     if (std::strstr(error->getDebugString().getString(), "glxglue_isdirect")) return;
     defaultHandler(error, data);
 }
 
 }  // namespace
 
-void startCoin()
-{
+void startCoin() {
     SoDB::init();
     SoNodeKit::init();
     SoInteraction::init();

@@ -20,13 +20,11 @@ namespace {
 
 constexpr std::string_view header = "time_ms,x,y,z,qx,qy,qz,qw";
 
-Error lineError(const std::string& name, int line, const std::string& expected, std::string_view found)
-{
+Error lineError(const std::string& name, int line, const std::string& expected, std::string_view found) {
     return {name + ":" + std::to_string(line), expected, "\"" + std::string(found) + "\""};
 }
 
-std::optional<std::array<double, 8>> readRow(std::string_view line)
-{
+std::optional<std::array<double, 8>> readRow(std::string_view line) {
     std::array<double, 8> row{};
     for (std::size_t i = 0; i < row.size(); ++i) {
         while (line.starts_with(' ')) line.remove_prefix(1);
@@ -43,20 +41,17 @@ std::optional<std::array<double, 8>> readRow(std::string_view line)
 
 }  // namespace
 
-Pose Flight::at(double timeMs) const
-{
+Pose Flight::at(double timeMs) const {
     return pose_(std::clamp(timeMs, 0.0, duration_));
 }
 
-Flight Flight::lasting(double durationMs) const
-{
+Flight Flight::lasting(double durationMs) const {
     if (duration_ <= 0.0) return *this;
     const double speed = duration_ / durationMs;
     return Flight(durationMs, [path = pose_, speed, end = duration_](double t) { return path(std::min(t * speed, end)); });
 }
 
-Pose lookAlong(const SbVec3f& position, const SbVec3f& direction)
-{
+Pose lookAlong(const SbVec3f& position, const SbVec3f& direction) {
     SbVec3f back = -direction;
     back.normalize();
     SbVec3f right = SbVec3f(0.0f, 0.0f, 1.0f).cross(back);
@@ -67,8 +62,7 @@ Pose lookAlong(const SbVec3f& position, const SbVec3f& direction)
     return {position, SbRotation(axes)};
 }
 
-Flight standardFlight(const FlightArea& area, double durationMs)
-{
+Flight standardFlight(const FlightArea& area, double durationMs) {
     const double pitch = 15.0 * std::numbers::pi / 180.0;
     return Flight(durationMs, [area, pitch, durationMs](double timeMs) {
         const double t = 2.0 * std::numbers::pi * timeMs / durationMs;
@@ -80,8 +74,7 @@ Flight standardFlight(const FlightArea& area, double durationMs)
     });
 }
 
-Flight keyFrameFlight(std::vector<TimedPose> poses)
-{
+Flight keyFrameFlight(std::vector<TimedPose> poses) {
     const double start = poses.empty() ? 0.0 : poses.front().timeMs;
     for (TimedPose& pose : poses) pose.timeMs -= start;
     const double duration = poses.empty() ? 0.0 : poses.back().timeMs;
@@ -98,8 +91,7 @@ Flight keyFrameFlight(std::vector<TimedPose> poses)
     });
 }
 
-Result<Flight> readFlight(std::istream& stream, const std::string& name)
-{
+Result<Flight> readFlight(std::istream& stream, const std::string& name) {
     std::vector<TimedPose> poses;
     std::string text;
     for (int line = 1; std::getline(stream, text); ++line) {
@@ -112,7 +104,8 @@ Result<Flight> readFlight(std::istream& stream, const std::string& name)
         const auto row = readRow(text);
         if (!row) return lineError(name, line, "8 finite numbers between commas", text.substr(0, 80));
         const auto& [time, x, y, z, qx, qy, qz, qw] = *row;
-        if (!poses.empty() && time <= poses.back().timeMs) return lineError(name, line, "a time after that of the line before", text);
+        if (!poses.empty() && time <= poses.back().timeMs)
+            return lineError(name, line, "a time after that of the line before", text);
         const double length = std::sqrt(qx * qx + qy * qy + qz * qz + qw * qw);
         if (!(length > 1e-6) || !std::isfinite(length)) return lineError(name, line, "a quaternion other than zero", text);
         const SbRotation turn(float(qx / length), float(qy / length), float(qz / length), float(qw / length));
@@ -122,15 +115,13 @@ Result<Flight> readFlight(std::istream& stream, const std::string& name)
     return keyFrameFlight(std::move(poses));
 }
 
-Result<Flight> readFlightFile(const std::string& path)
-{
+Result<Flight> readFlightFile(const std::string& path) {
     std::ifstream file(path);
     if (!file) return Error{path, "a readable flight in CSV", "no such file, or no permission"};
     return readFlight(file, path);
 }
 
-Result<FlightWriter> FlightWriter::open(const std::string& path)
-{
+Result<FlightWriter> FlightWriter::open(const std::string& path) {
     FlightWriter writer;
     writer.file_.open(path, std::ios::trunc);
     if (!writer.file_) return Error{path, "a file that can be written", "no permission, or no such folder"};
@@ -140,8 +131,7 @@ Result<FlightWriter> FlightWriter::open(const std::string& path)
     return writer;
 }
 
-void FlightWriter::write(double timeMs, const Pose& pose)
-{
+void FlightWriter::write(double timeMs, const Pose& pose) {
     float q[4];
     pose.orientation.getValue(q[0], q[1], q[2], q[3]);
     file_ << timeMs;
@@ -150,8 +140,7 @@ void FlightWriter::write(double timeMs, const Pose& pose)
     file_ << '\n';
 }
 
-bool FlightWriter::close()
-{
+bool FlightWriter::close() {
     file_.close();
     return !file_.fail();
 }

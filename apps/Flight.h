@@ -45,8 +45,8 @@ struct FlightArea {
 
 /// The pose that looks from a position along a direction, z up.
 Pose lookAlong(const SbVec3f& position, const SbVec3f& direction);
-/// The standard flight: once round the middle of the area in the given time, counter-clockwise from the east, with radii of 0.3 of its
-/// width and depth, looking along the tangent pitched 15 degrees down.
+/// The standard flight: once round the middle of the area in the given time, counter-clockwise from the east, with radii of 0.3 of
+/// its width and depth, looking along the tangent pitched 15 degrees down.
 Flight standardFlight(const FlightArea& area, double durationMs);
 
 /// A recorded pose.

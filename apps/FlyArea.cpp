@@ -26,8 +26,7 @@ constexpr double restMs = 600.0;
 constexpr double textEveryMs = 250.0;
 constexpr int tickMs = 8;
 
-double smooth(double old, double value)
-{
+double smooth(double old, double value) {
     return old > 0.0 ? old + 0.15 * (value - old) : value;
 }
 
@@ -36,8 +35,7 @@ double smooth(double old, double value)
 FlyArea::FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& log, Animation animation, double loadMs)
     : SoQtRenderArea(parent, "SoTerrainTest", TRUE), options_(options), scene_(scene), log_(log), animation_(std::move(animation)),
       loadMs_(loadMs), camera_([&scene](const SbVec3f& point) { return scene.groundHeight(point); }, scene.size()),
-      startMs_(nowMs()), lastTickMs_(startMs_)
-{
+      startMs_(nowMs()), lastTickMs_(startMs_) {
     ends_ = options.frames || !options.profile.empty() || options.stats || options.measureError || !options.record.empty();
     logging_ = ends_;
     camera_.setPose(scene.home());
@@ -52,24 +50,21 @@ FlyArea::FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& 
     wake();
 }
 
-void FlyArea::play(Animation animation)
-{
+void FlyArea::play(Animation animation) {
     play_ = Play{std::move(animation), 0.0, -1};
     due_ = false;
     scene_.setPose(play_->animation.flight.at(0.0));
     wake();
 }
 
-void FlyArea::wake()
-{
+void FlyArea::wake() {
     activeUntilMs_ = nowMs() + restMs;
     if (timer_.isActive()) return;
     lastTickMs_ = nowMs();
     timer_.start(tickMs);
 }
 
-void FlyArea::tick()
-{
+void FlyArea::tick() {
     const double now = nowMs();
     if (play_) {
         advance(now);
@@ -90,15 +85,15 @@ void FlyArea::tick()
 }
 
 // The animation's clock starts with its first frame, after the window and the first upload.
-void FlyArea::advance(double now)
-{
+void FlyArea::advance(double now) {
     if (due_ || renderer_.empty()) return;
     if (play_->last < 0) play_->startMs = now;
     const FrameSchedule& schedule = play_->animation.schedule;
     const double elapsed = now - play_->startMs;
     const auto next = schedule.next(play_->last, elapsed);
     // A frame that is not synchronised has its duration too, but a late one delays all that follow.
-    const bool early = next && (schedule.synchronized ? next->waitMs > 0.5 : play_->last >= 0 && now - lastDueMs_ < schedule.stepMs - 0.5);
+    const bool early =
+        next && (schedule.synchronized ? next->waitMs > 0.5 : play_->last >= 0 && now - lastDueMs_ < schedule.stepMs - 0.5);
     if (early || (!next && schedule.synchronized && elapsed < schedule.durationMs)) return;
     if (!next) return endOfAnimation();
     play_->last = next->frame;
@@ -109,8 +104,7 @@ void FlyArea::advance(double now)
     scheduleRedraw();
 }
 
-void FlyArea::endOfAnimation()
-{
+void FlyArea::endOfAnimation() {
     if (replayProfile_) {
         endReplay("played");
         takeOver();
@@ -125,8 +119,7 @@ void FlyArea::endOfAnimation()
 }
 
 // The user steers from where the animation is.
-void FlyArea::takeOver()
-{
+void FlyArea::takeOver() {
     if (play_ && !ends_) {
         endReplay("stopped");
         play_.reset();
@@ -135,8 +128,7 @@ void FlyArea::takeOver()
     wake();
 }
 
-void FlyArea::actualRedraw()
-{
+void FlyArea::actualRedraw() {
     const double start = nowMs();
     SoQtRenderArea::actualRedraw();
     if (logging_ || replayProfile_) glFinish();
@@ -154,15 +146,13 @@ void FlyArea::actualRedraw()
     logFrame(end - start);
 }
 
-void FlyArea::sizeChanged(const SbVec2s& size)
-{
+void FlyArea::sizeChanged(const SbVec2s& size) {
     SoQtRenderArea::sizeChanged(size);
     resized_ = true;
     wake();
 }
 
-void FlyArea::logFrame(double frameMs)
-{
+void FlyArea::logFrame(double frameMs) {
     if (play_ && !due_) return;  // a redraw of the same frame, for the window's sake
     frame_ = play_ ? play_->last : frame_ + 1;
     const double time = play_ ? play_->animation.schedule.time(frame_) : nowMs() - startMs_;
@@ -185,8 +175,7 @@ void FlyArea::logFrame(double frameMs)
     if (problem_) SoQt::exitMainLoop();
 }
 
-std::string FlyArea::status() const
-{
+std::string FlyArea::status() const {
     const FrameFigures figures = scene_.figures();
     char text[200];
     const double ms = intervalMs_ > 0.0 ? std::max(intervalMs_, frameMs_) : frameMs_;
@@ -195,7 +184,8 @@ std::string FlyArea::status() const
     std::string line = text;
     if (figures.terrain) {
         const auto* wanted = dynamic_cast<SoSFFloat*>(scene_.terrain()->getField("pixelError"));
-        std::snprintf(text, sizeof text, "   error %.2f of %.2f px", figures.terrain->errorPixels, wanted ? wanted->getValue() : 0.0f);
+        std::snprintf(text, sizeof text, "   error %.2f of %.2f px", figures.terrain->errorPixels,
+                      wanted ? wanted->getValue() : 0.0f);
         line += text;
     }
     const auto* culling = scene_.terrain() ? dynamic_cast<SoSFBool*>(scene_.terrain()->getField("frustumCulling")) : nullptr;

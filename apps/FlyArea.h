@@ -70,19 +70,19 @@ private:
     StatusLine statusLine_;
     QTimer timer_;
     std::optional<Play> play_;
-    bool ends_;                 ///< the program ends with the animation
-    bool due_ = false;          ///< a frame of the animation waits to be drawn
-    bool resized_ = false;      ///< SoQt drops a redraw that is asked for while its widgets are resized
-    bool logging_;              ///< times are those of finished frames
+    bool ends_;             ///< the program ends with the animation
+    bool due_ = false;      ///< a frame of the animation waits to be drawn
+    bool resized_ = false;  ///< SoQt drops a redraw that is asked for while its widgets are resized
+    bool logging_;          ///< times are those of finished frames
     int frame_ = -1;
     double startMs_;
     double lastTickMs_;
     double activeUntilMs_ = 0.0;
     double textMs_ = 0.0;
-    double frameMs_ = 0.0;      ///< smoothed
-    double intervalMs_ = 0.0;   ///< smoothed, between frames that follow each other closely
+    double frameMs_ = 0.0;     ///< smoothed
+    double intervalMs_ = 0.0;  ///< smoothed, between frames that follow each other closely
     double lastRedrawMs_ = 0.0;
-    double lastDueMs_ = 0.0;    ///< when the latest frame of the animation was asked for
+    double lastDueMs_ = 0.0;            ///< when the latest frame of the animation was asked for
     std::optional<float> formerError_;  ///< pixel error before full detail
     std::optional<std::vector<TimedPose>> recording_;
     std::vector<TimedPose> recorded_;

@@ -31,8 +31,8 @@ struct SteeringKey {
 };
 
 constexpr SteeringKey steeringKeys[] = {
-    {Qt::Key_W, FlyAxis::Forward, 1.0f},   {Qt::Key_S, FlyAxis::Forward, -1.0f}, {Qt::Key_D, FlyAxis::Right, 1.0f},
-    {Qt::Key_A, FlyAxis::Right, -1.0f},    {Qt::Key_Q, FlyAxis::Up, 1.0f},       {Qt::Key_E, FlyAxis::Up, -1.0f},
+    {Qt::Key_W, FlyAxis::Forward, 1.0f},   {Qt::Key_S, FlyAxis::Forward, -1.0f},  {Qt::Key_D, FlyAxis::Right, 1.0f},
+    {Qt::Key_A, FlyAxis::Right, -1.0f},    {Qt::Key_Q, FlyAxis::Up, 1.0f},        {Qt::Key_E, FlyAxis::Up, -1.0f},
     {Qt::Key_Left, FlyAxis::Turn, 1.0f},   {Qt::Key_Right, FlyAxis::Turn, -1.0f}, {Qt::Key_Up, FlyAxis::Pitch, 1.0f},
     {Qt::Key_Down, FlyAxis::Pitch, -1.0f}, {Qt::Key_PageUp, FlyAxis::Roll, 1.0f}, {Qt::Key_PageDown, FlyAxis::Roll, -1.0f},
 };
@@ -44,8 +44,7 @@ const char* const replayFile = "soterrain-replay.csv";
 
 }  // namespace
 
-void FlyArea::processEvent(QEvent* event)
-{
+void FlyArea::processEvent(QEvent* event) {
     switch (event->type()) {
     case QEvent::KeyPress:
     case QEvent::KeyRelease: {
@@ -55,7 +54,9 @@ void FlyArea::processEvent(QEvent* event)
         if (steer(key, press) || (press && command(key))) return;
         break;
     }
-    case QEvent::FocusOut: camera_.releaseAll(); break;
+    case QEvent::FocusOut:
+        camera_.releaseAll();
+        break;
     case QEvent::MouseButtonPress:
     case QEvent::MouseButtonRelease:
     case QEvent::MouseMove:
@@ -66,13 +67,13 @@ void FlyArea::processEvent(QEvent* event)
         camera_.changeSpeed(std::pow(1.2f, float(steps) / 120.0f));
         return;
     }
-    default: break;
+    default:
+        break;
     }
     SoQtRenderArea::processEvent(event);
 }
 
-bool FlyArea::steer(const QKeyEvent& event, bool press)
-{
+bool FlyArea::steer(const QKeyEvent& event, bool press) {
     const auto known = std::find_if(std::begin(steeringKeys), std::end(steeringKeys),
                                     [&](const SteeringKey& steering) { return steering.key == event.key(); });
     if (known == std::end(steeringKeys)) return false;
@@ -81,40 +82,55 @@ bool FlyArea::steer(const QKeyEvent& event, bool press)
     return true;
 }
 
-bool FlyArea::command(const QKeyEvent& event)
-{
+bool FlyArea::command(const QKeyEvent& event) {
     switch (event.key()) {
-    case Qt::Key_Plus: scalePixelError(errorStep); break;
-    case Qt::Key_Minus: scalePixelError(1.0f / errorStep); break;
+    case Qt::Key_Plus:
+        scalePixelError(errorStep);
+        break;
+    case Qt::Key_Minus:
+        scalePixelError(1.0f / errorStep);
+        break;
     case Qt::Key_F:
         if (auto* culling = scene_.terrain() ? dynamic_cast<SoSFBool*>(scene_.terrain()->getField("frustumCulling")) : nullptr) {
             culling->setValue(!culling->getValue());
         }
         break;
-    case Qt::Key_L: scene_.setWireframe(!scene_.wireframe()); break;
+    case Qt::Key_L:
+        scene_.setWireframe(!scene_.wireframe());
+        break;
     case Qt::Key_Return:
     case Qt::Key_Enter:
-        if (event.modifiers() & Qt::AltModifier) toggleFullScreen();
-        else toggleDetail();
+        if (event.modifiers() & Qt::AltModifier)
+            toggleFullScreen();
+        else
+            toggleDetail();
         break;
-    case Qt::Key_Space: camera_.setConstantHeight(!camera_.constantHeight()); break;
+    case Qt::Key_Space:
+        camera_.setConstantHeight(!camera_.constantHeight());
+        break;
     case Qt::Key_Tab:
         takeOver();
         camera_.setPose(scene_.home());
         scene_.setPose(scene_.home());
         break;
-    case Qt::Key_R: toggleRecord(); break;
-    case Qt::Key_P: togglePlay(); break;
-    case Qt::Key_Escape: SoQt::exitMainLoop(); break;
-    default: return false;
+    case Qt::Key_R:
+        toggleRecord();
+        break;
+    case Qt::Key_P:
+        togglePlay();
+        break;
+    case Qt::Key_Escape:
+        SoQt::exitMainLoop();
+        break;
+    default:
+        return false;
     }
     wake();
     return true;
 }
 
 // The geometry is set too, for displays without a window manager that would do it.
-void FlyArea::toggleFullScreen()
-{
+void FlyArea::toggleFullScreen() {
     QWidget* shell = getWidget()->window();
     const bool full = shell->windowState() & Qt::WindowFullScreen;
     if (!full) windowed_ = shell->geometry();
@@ -122,8 +138,7 @@ void FlyArea::toggleFullScreen()
     shell->setGeometry(full ? windowed_ : shell->screen()->geometry());
 }
 
-void FlyArea::scalePixelError(float factor)
-{
+void FlyArea::scalePixelError(float factor) {
     auto* field = scene_.terrain() ? dynamic_cast<SoSFFloat*>(scene_.terrain()->getField("pixelError")) : nullptr;
     if (!field) return;
     const float before = formerError_.value_or(field->getValue());
@@ -131,8 +146,7 @@ void FlyArea::scalePixelError(float factor)
     field->setValue(std::clamp(std::max(before, 0.1f) * factor, 0.1f, 100.0f));
 }
 
-void FlyArea::toggleDetail()
-{
+void FlyArea::toggleDetail() {
     auto* field = scene_.terrain() ? dynamic_cast<SoSFFloat*>(scene_.terrain()->getField("pixelError")) : nullptr;
     if (!field) return;
     if (formerError_) {
@@ -144,8 +158,7 @@ void FlyArea::toggleDetail()
     }
 }
 
-void FlyArea::toggleRecord()
-{
+void FlyArea::toggleRecord() {
     if (!recording_) {
         recording_.emplace();
         message_.clear();
@@ -162,8 +175,7 @@ void FlyArea::toggleRecord()
     message_ = written ? std::string("recorded ") + recordFile : std::string("cannot write ") + recordFile;
 }
 
-void FlyArea::togglePlay()
-{
+void FlyArea::togglePlay() {
     if (ends_) return;
     if (play_) return takeOver();
     auto flight = recorded_.empty() ? readFlightFile(recordFile) : terrain::Result<Flight>(keyFrameFlight(recorded_));
@@ -172,14 +184,15 @@ void FlyArea::togglePlay()
         return;
     }
     message_.clear();
-    if (auto profile = ProfileWriter::open(replayFile)) replayProfile_ = std::move(profile).value();
-    else message_ = std::string("cannot write ") + replayFile;
+    if (auto profile = ProfileWriter::open(replayFile))
+        replayProfile_ = std::move(profile).value();
+    else
+        message_ = std::string("cannot write ") + replayFile;
     const Flight path = std::move(flight).value();
     play({path, FrameSchedule::make(path.duration(), options_.frameTime, std::nullopt, true)});
 }
 
-void FlyArea::endReplay(const char* how)
-{
+void FlyArea::endReplay(const char* how) {
     if (!replayProfile_) return;
     const bool written = replayProfile_->close();
     replayProfile_.reset();
@@ -187,8 +200,7 @@ void FlyArea::endReplay(const char* how)
     std::fprintf(stderr, "SoTerrainTest: %s\n", message_.c_str());
 }
 
-bool FlyArea::mouse(const QMouseEvent& event)
-{
+bool FlyArea::mouse(const QMouseEvent& event) {
     if (!(event.buttons() & Qt::LeftButton)) {
         drag_.reset();
         return false;

@@ -15,8 +15,7 @@ struct Number {
 };
 
 // Returns false for anything but %% and one %d. User text never reaches printf.
-bool scan(const std::string& pattern, Number& number)
-{
+bool scan(const std::string& pattern, Number& number) {
     for (std::size_t i = 0; i < pattern.size(); ++i) {
         if (pattern[i] != '%') continue;
         const std::size_t begin = i++;
@@ -33,29 +32,25 @@ bool scan(const std::string& pattern, Number& number)
     return true;
 }
 
-std::string unescape(std::string text)
-{
+std::string unescape(std::string text) {
     for (std::size_t i = text.find("%%"); i != std::string::npos; i = text.find("%%", i + 1)) text.erase(i, 1);
     return text;
 }
 
 }  // namespace
 
-std::optional<terrain::Error> checkFrameName(const std::string& pattern)
-{
+std::optional<terrain::Error> checkFrameName(const std::string& pattern) {
     Number number;
     if (scan(pattern, number)) return std::nullopt;
     return terrain::Error{"--output", "a file name with at most one frame number such as %d or %04d", pattern};
 }
 
-bool hasFrameNumber(const std::string& pattern)
-{
+bool hasFrameNumber(const std::string& pattern) {
     Number number;
     return scan(pattern, number) && number.begin != std::string::npos;
 }
 
-std::string frameName(const std::string& pattern, int frame)
-{
+std::string frameName(const std::string& pattern, int frame) {
     Number number;
     if (!scan(pattern, number) || number.begin == std::string::npos) return unescape(pattern);
     std::string digits = std::to_string(frame);

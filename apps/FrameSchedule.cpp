@@ -7,8 +7,8 @@
 
 namespace app {
 
-FrameSchedule FrameSchedule::make(double durationMs, std::optional<double> frameTimeMs, std::optional<int> frames, bool synchronized)
-{
+FrameSchedule FrameSchedule::make(double durationMs, std::optional<double> frameTimeMs, std::optional<int> frames,
+                                  bool synchronized) {
     FrameSchedule schedule;
     schedule.synchronized = synchronized;
     schedule.durationMs = durationMs;
@@ -20,8 +20,7 @@ FrameSchedule FrameSchedule::make(double durationMs, std::optional<double> frame
     return schedule;
 }
 
-std::optional<FrameSchedule::Next> FrameSchedule::next(int last, double elapsedMs) const
-{
+std::optional<FrameSchedule::Next> FrameSchedule::next(int last, double elapsedMs) const {
     if (!synchronized) return last + 1 < frames ? std::optional(Next{last + 1, 0.0}) : std::nullopt;
     const int due = int(std::min(elapsedMs / stepMs, 2e9));
     const int frame = std::max(due, last + 1);

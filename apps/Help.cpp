@@ -63,8 +63,7 @@ Exit status: 0, 1 when data can't be read, drawn or written, 2 for a wrong comma
 
 }  // namespace
 
-std::string help()
-{
+std::string help() {
     std::string text = usage() + optionHelp;
     for (const Algorithm& algorithm : algorithms()) {
         std::string name(algorithm.name);

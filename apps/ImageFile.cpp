@@ -21,8 +21,7 @@ namespace {
 
 constexpr int sideLimit = 32767;  // the most that SbVec2s holds
 
-std::optional<Error> writePpm(const std::string& path, const Image& image)
-{
+std::optional<Error> writePpm(const std::string& path, const Image& image) {
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file << "P6\n" << image.width << ' ' << image.height << "\n255\n";
     file.write(reinterpret_cast<const char*>(image.pixels.data()), std::streamsize(image.pixels.size()));
@@ -32,8 +31,7 @@ std::optional<Error> writePpm(const std::string& path, const Image& image)
 }
 
 #ifndef HAVE_OPENIMAGEIO
-Result<Image> readPnm(const std::string& path)
-{
+Result<Image> readPnm(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return Error{path, "a readable picture", "no such file, or no permission"};
     std::string magic;
@@ -57,8 +55,7 @@ Result<Image> readPnm(const std::string& path)
 
 #ifdef HAVE_OPENIMAGEIO
 
-Result<Image> readImage(const std::string& path)
-{
+Result<Image> readImage(const std::string& path) {
     if (!std::ifstream(path)) return Error{path, "a readable picture", "no such file, or no permission"};
     const auto input = OIIO::ImageInput::open(path);
     if (!input) return Error{path, "a picture", OIIO::geterror()};
@@ -75,8 +72,7 @@ Result<Image> readImage(const std::string& path)
     return image;
 }
 
-std::optional<Error> writeImage(const std::string& path, const Image& image)
-{
+std::optional<Error> writeImage(const std::string& path, const Image& image) {
     if (path.ends_with(".ppm")) return writePpm(path, image);
     const auto output = OIIO::ImageOutput::create(path);
     if (!output) return Error{path, "the name of a picture, such as .png, .jpg or .ppm", OIIO::geterror()};
@@ -88,13 +84,11 @@ std::optional<Error> writeImage(const std::string& path, const Image& image)
 
 #else
 
-Result<Image> readImage(const std::string& path)
-{
+Result<Image> readImage(const std::string& path) {
     return readPnm(path);
 }
 
-std::optional<Error> writeImage(const std::string& path, const Image& image)
-{
+std::optional<Error> writeImage(const std::string& path, const Image& image) {
     if (path.ends_with(".ppm")) return writePpm(path, image);
     return Error{path, "a name that ends in .ppm (this build has no OpenImageIO)", "another one"};
 }

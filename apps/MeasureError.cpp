@@ -30,8 +30,7 @@ namespace {
 constexpr double binsPerPixel = 1000.0;
 constexpr std::size_t binLimit = 1000000;
 
-SbDPMatrix toDouble(const SbMatrix& m)
-{
+SbDPMatrix toDouble(const SbMatrix& m) {
     SbDPMatrix d;
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 4; ++column) d[row][column] = m[row][column];
@@ -40,8 +39,7 @@ SbDPMatrix toDouble(const SbMatrix& m)
 }
 
 // Homogeneous clip coordinates of a point.
-std::array<double, 4> project(const SbDPMatrix& m, double x, double y, double z)
-{
+std::array<double, 4> project(const SbDPMatrix& m, double x, double y, double z) {
     std::array<double, 4> clip;
     for (int i = 0; i < 4; ++i) clip[std::size_t(i)] = x * m[0][i] + y * m[1][i] + z * m[2][i] + m[3][i];
     return clip;
@@ -50,8 +48,7 @@ std::array<double, 4> project(const SbDPMatrix& m, double x, double y, double z)
 // A depth and colour buffer of its own; the former binding comes back at the end.
 class DepthTarget {
 public:
-    explicit DepthTarget(int side) : side_(side)
-    {
+    explicit DepthTarget(int side) : side_(side) {
         glGetIntegerv(GL_FRAMEBUFFER_BINDING, &former_);
         glGenFramebuffers(1, &framebuffer_);
         glGenRenderbuffers(2, buffers_);
@@ -60,8 +57,7 @@ public:
         attach(1, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT);
         glBindRenderbuffer(GL_RENDERBUFFER, 0);
     }
-    ~DepthTarget()
-    {
+    ~DepthTarget() {
         glBindFramebuffer(GL_FRAMEBUFFER, GLuint(former_));
         glDeleteRenderbuffers(2, buffers_);
         glDeleteFramebuffers(1, &framebuffer_);
@@ -70,8 +66,7 @@ public:
     DepthTarget& operator=(const DepthTarget&) = delete;
 
     bool isComplete() const { return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; }
-    std::vector<float> read() const
-    {
+    std::vector<float> read() const {
         std::vector<float> depth(std::size_t(side_) * std::size_t(side_));
         glPixelStorei(GL_PACK_ALIGNMENT, 4);
         glReadPixels(0, 0, side_, side_, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
@@ -79,8 +74,7 @@ public:
     }
 
 private:
-    void attach(int buffer, GLenum format, GLenum point)
-    {
+    void attach(int buffer, GLenum format, GLenum point) {
         glBindRenderbuffer(GL_RENDERBUFFER, buffers_[buffer]);
         glRenderbufferStorage(GL_RENDERBUFFER, format, side_, side_);
         glFramebufferRenderbuffer(GL_FRAMEBUFFER, point, GL_RENDERBUFFER, buffers_[buffer]);
@@ -95,8 +89,7 @@ private:
 // Keeps the mesh of a terrain node as it is, without telling anybody that a field changed.
 class FreezeScope {
 public:
-    explicit FreezeScope(SoNode* node) : node_(node), field_(dynamic_cast<SoSFBool*>(node->getField("freeze")))
-    {
+    explicit FreezeScope(SoNode* node) : node_(node), field_(dynamic_cast<SoSFBool*>(node->getField("freeze"))) {
         if (field_) former_ = field_->getValue();
         set(TRUE);
     }
@@ -105,8 +98,7 @@ public:
     FreezeScope& operator=(const FreezeScope&) = delete;
 
 private:
-    void set(SbBool value)
-    {
+    void set(SbBool value) {
         if (!field_) return;
         const SbBool notify = node_->enableNotify(FALSE);
         field_->setValue(value);
@@ -119,8 +111,7 @@ private:
 };
 
 // A valid sample with a hole beside it may belong to no triangle.
-bool bordersHole(const HeightTile& tile, int column, int row)
-{
+bool bordersHole(const HeightTile& tile, int column, int row) {
     for (int r = std::max(0, row - 1); r <= std::min(tile.rows - 1, row + 1); ++r) {
         for (int c = std::max(0, column - 1); c <= std::min(tile.columns - 1, column + 1); ++c) {
             if (std::isnan(tile.heights[std::size_t(r) * std::size_t(tile.columns) + std::size_t(c)])) return true;
@@ -139,8 +130,7 @@ struct ErrorMeter::Window {
     int firstRow() const { return key.row * key.cells; }
 };
 
-void ErrorSample::add(double errorPixels)
-{
+void ErrorSample::add(double errorPixels) {
     const std::size_t bin = std::min(binLimit, std::size_t(std::max(0.0, errorPixels) * binsPerPixel));
     if (bin >= bins_.size()) bins_.resize(bin + 1, 0);
     ++bins_[bin];
@@ -149,8 +139,7 @@ void ErrorSample::add(double errorPixels)
     maximum_ = std::max(maximum_, errorPixels);
 }
 
-void ErrorSample::merge(const ErrorSample& other)
-{
+void ErrorSample::merge(const ErrorSample& other) {
     bins_.resize(std::max(bins_.size(), other.bins_.size()), 0);
     for (std::size_t i = 0; i < other.bins_.size(); ++i) bins_[i] += other.bins_[i];
     count_ += other.count_;
@@ -160,13 +149,11 @@ void ErrorSample::merge(const ErrorSample& other)
     frames.insert(frames.end(), other.frames.begin(), other.frames.end());
 }
 
-double ErrorSample::rms() const
-{
+double ErrorSample::rms() const {
     return count_ ? std::sqrt(sumOfSquares_ / double(count_)) : 0.0;
 }
 
-double ErrorSample::quantile(double part) const
-{
+double ErrorSample::quantile(double part) const {
     const double target = part * double(count_);
     double passed = 0.0;
     for (std::size_t i = 0; i < bins_.size(); ++i) {
@@ -177,21 +164,18 @@ double ErrorSample::quantile(double part) const
 }
 
 ErrorMeter::ErrorMeter(TerrainGrid grid, SoGroup* parent, SoNode* terrain)
-    : grid_(std::move(grid)), parent_(parent), terrain_(terrain), hook_(new SoCallback)
-{
+    : grid_(std::move(grid)), parent_(parent), terrain_(terrain), hook_(new SoCallback) {
     hook_->setCallback(replaceMatrices, this);
     parent->insertChild(hook_.get(), parent->findChild(terrain));
 }
 
-ErrorMeter::~ErrorMeter()
-{
+ErrorMeter::~ErrorMeter() {
     hook_->setCallback(nullptr);
     const int index = parent_->findChild(hook_.get());
     if (index >= 0) parent_->removeChild(index);
 }
 
-void ErrorMeter::replaceMatrices(void* self, SoAction* action)
-{
+void ErrorMeter::replaceMatrices(void* self, SoAction* action) {
     auto& meter = *static_cast<ErrorMeter*>(self);
     if (!action->isOfType(SoGLRenderAction::getClassTypeId())) return;
     SoState* state = action->getState();
@@ -216,8 +200,7 @@ void ErrorMeter::replaceMatrices(void* self, SoAction* action)
     glLoadIdentity();
 }
 
-Result<bool> ErrorMeter::compare(const Window& window, const std::vector<float>& depth, ErrorSample& sample) const
-{
+Result<bool> ErrorMeter::compare(const Window& window, const std::vector<float>& depth, ErrorSample& sample) const {
     const auto loaded = grid_.source->load(window.key);
     if (!loaded) return loaded.error();
     const HeightTile& tile = loaded.value();
@@ -245,8 +228,7 @@ Result<bool> ErrorMeter::compare(const Window& window, const std::vector<float>&
     return true;
 }
 
-Result<ErrorSample> ErrorMeter::measure(const std::function<void()>& draw)
-{
+Result<ErrorSample> ErrorMeter::measure(const std::function<void()>& draw) {
     GLint largest = 0;
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
     const int side = std::min({std::max(grid_.columns, grid_.rows), int(largest), 2048});

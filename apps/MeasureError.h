@@ -42,12 +42,12 @@ private:
     double maximum_ = 0.0;
 };
 
-/// Draws what the node has chosen for the camera once more, from straight above, one pixel a sample, into a depth buffer, and compares
-/// the heights found there with the data. Both are taken to the screen of the real camera; the distance there is the error. Samples on
-/// the border of the map are left out, because the rasteriser owes no pixel there.
+/// Draws what the node has chosen for the camera once more, from straight above, one pixel a sample, into a depth buffer, and
+/// compares the heights found there with the data. Both are taken to the screen of the real camera; the distance there is the
+/// error. Samples on the border of the map are left out, because the rasteriser owes no pixel there.
 ///
-/// Only GL's matrices and viewport are replaced, behind Coin's back, so the node chooses for the real camera. Shapes whose shaders get
-/// their matrices from elsewhere can't be measured so. While a meter is in a scene, Coin keeps no render caches there.
+/// Only GL's matrices and viewport are replaced, behind Coin's back, so the node chooses for the real camera. Shapes whose shaders
+/// get their matrices from elsewhere can't be measured so. While a meter is in a scene, Coin keeps no render caches there.
 class ErrorMeter {
 public:
     /// Puts its hook into the group just before the terrain, which draws the grid in its own coordinates.
@@ -56,8 +56,8 @@ public:
     ErrorMeter(const ErrorMeter&) = delete;
     ErrorMeter& operator=(const ErrorMeter&) = delete;
 
-    /// `draw` clears colour and depth and applies a GL render action to the scene; the GL context is current. The node's mesh stays as
-    /// it is (field `freeze`) and the frame buffer binding is restored.
+    /// `draw` clears colour and depth and applies a GL render action to the scene; the GL context is current. The node's mesh stays
+    /// as it is (field `freeze`) and the frame buffer binding is restored.
     terrain::Result<ErrorSample> measure(const std::function<void()>& draw);
 
 private:

@@ -10,19 +10,16 @@ template <class T>
 class NodePtr {
 public:
     NodePtr() = default;
-    explicit NodePtr(T* node) : node_(node)
-    {
+    explicit NodePtr(T* node) : node_(node) {
         if (node_) node_->ref();
     }
     NodePtr(const NodePtr& other) : NodePtr(other.node_) {}
     NodePtr(NodePtr&& other) noexcept : node_(std::exchange(other.node_, nullptr)) {}
-    NodePtr& operator=(NodePtr other) noexcept
-    {
+    NodePtr& operator=(NodePtr other) noexcept {
         std::swap(node_, other.node_);
         return *this;
     }
-    ~NodePtr()
-    {
+    ~NodePtr() {
         if (node_) node_->unref();
     }
 

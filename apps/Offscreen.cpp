@@ -28,16 +28,14 @@ class OffscreenRun {
 public:
     OffscreenRun(const Options& options, Scene& scene, HeadlessContext& context)
         : options_(options), scene_(scene), context_(context),
-          action_(SbViewportRegion(short(context.width()), short(context.height())))
-    {
+          action_(SbViewportRegion(short(context.width()), short(context.height()))) {
         action_.setCacheContext(SoGLCacheContextElement::getUniqueCacheContext());
         context_.bindFramebuffer();
         glEnable(GL_DEPTH_TEST);
         glClearColor(skyColor[0], skyColor[1], skyColor[2], 1.0f);
     }
 
-    void draw()
-    {
+    void draw() {
         SoSensorManager* sensors = SoDB::getSensorManager();
         sensors->processTimerQueue();
         sensors->processDelayQueue(TRUE);
@@ -46,16 +44,14 @@ public:
     }
 
     /// Milliseconds that a whole frame takes.
-    double drawTimed()
-    {
+    double drawTimed() {
         const double start = nowMs();
         draw();
         glFinish();
         return nowMs() - start;
     }
 
-    std::optional<Error> frame(RunLog& log, int frame, double timeMs)
-    {
+    std::optional<Error> frame(RunLog& log, int frame, double timeMs) {
         log.frame(frame, timeMs, drawTimed(), scene_);
         if (!options_.output.empty()) {
             if (auto problem = writeImage(frameName(options_.output, frame), context_.readColor())) return problem;
@@ -72,8 +68,7 @@ private:
     SoGLRenderAction action_;
 };
 
-std::optional<Error> OffscreenRun::animate(RunLog& log, const Animation& animation)
-{
+std::optional<Error> OffscreenRun::animate(RunLog& log, const Animation& animation) {
     const FrameSchedule& schedule = animation.schedule;
     const double start = nowMs();
     const auto wait = [](double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); };
@@ -93,8 +88,7 @@ std::optional<Error> OffscreenRun::animate(RunLog& log, const Animation& animati
 
 }  // namespace
 
-std::optional<Error> runOffscreen(const Options& options, Scene& scene, double startedMs)
-{
+std::optional<Error> runOffscreen(const Options& options, Scene& scene, double startedMs) {
     const bool animated = options.animate || options.frames || !options.flight.empty();
     auto animation = Animation::make(options, scene);
     if (!animation) return animation.error();

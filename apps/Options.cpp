@@ -17,8 +17,23 @@ using terrain::Result;
 namespace {
 
 // Long options without a short one get a number beyond the characters.
-enum LongOption { Scene = 256, Offscreen, Output, Frames, FlightFile, Record, Spacing, HeightScale, Channel, RawSize, RawSamples, MeasureError, Stats,
-                  Help, Version };
+enum LongOption {
+    Scene = 256,
+    Offscreen,
+    Output,
+    Frames,
+    FlightFile,
+    Record,
+    Spacing,
+    HeightScale,
+    Channel,
+    RawSize,
+    RawSamples,
+    MeasureError,
+    Stats,
+    Help,
+    Version
+};
 
 const option longOptions[] = {
     {"heightmap", required_argument, nullptr, 'h'},
@@ -52,8 +67,7 @@ const option longOptions[] = {
     {nullptr, 0, nullptr, 0},
 };
 
-std::string optionName(int code)
-{
+std::string optionName(int code) {
     for (const option* known = longOptions; known->name; ++known) {
         if (known->val == code) return code < 256 ? std::string("-") + char(code) : std::string("--") + known->name;
     }
@@ -61,8 +75,7 @@ std::string optionName(int code)
 }
 
 template <class Number>
-std::optional<Number> readNumber(std::string_view text)
-{
+std::optional<Number> readNumber(std::string_view text) {
     Number value{};
     const char* end = text.data() + text.size();
     const auto [stop, problem] = std::from_chars(text.data(), end, value);
@@ -73,8 +86,7 @@ std::optional<Number> readNumber(std::string_view text)
     return value;
 }
 
-std::optional<glm::dvec2> readPair(std::string_view text, char separator)
-{
+std::optional<glm::dvec2> readPair(std::string_view text, char separator) {
     const std::size_t middle = text.find(separator);
     const auto first = readNumber<double>(text.substr(0, middle));
     const auto second = middle == text.npos ? first : readNumber<double>(text.substr(middle + 1));
@@ -83,8 +95,7 @@ std::optional<glm::dvec2> readPair(std::string_view text, char separator)
 }
 
 // Two whole numbers from lowest to highest with an x between.
-std::optional<glm::ivec2> readSize(std::string_view text, int lowest, int highest)
-{
+std::optional<glm::ivec2> readSize(std::string_view text, int lowest, int highest) {
     const std::size_t middle = text.find('x');
     if (middle == text.npos) return std::nullopt;
     const auto width = readNumber<int>(text.substr(0, middle)), height = readNumber<int>(text.substr(middle + 1));
@@ -105,8 +116,7 @@ constexpr struct {
 class Reader {
 public:
     void take(int code, const char* value);
-    void refuse(const std::string& subject, const std::string& expected, const std::string& found)
-    {
+    void refuse(const std::string& subject, const std::string& expected, const std::string& found) {
         if (!problem) problem = Error{subject, expected, found};
     }
 
@@ -125,92 +135,158 @@ private:
     void whole(int code, const char* value, int lowest, std::optional<int>& target);
 };
 
-void Reader::take(int code, const char* value)
-{
+void Reader::take(int code, const char* value) {
     switch (code) {
-    case 'h': case 't': case 'p': case Scene: case Output: case FlightFile: case Record: takeFile(code, value); break;
-    case 'A': case 'F': case 'e': case 'r': case 'g': case Frames: case HeightScale: case Channel: case MeasureError:
-        takeNumber(code, value); break;
-    case Offscreen: case RawSize: takeSize(code, value); break;
-    case Spacing: takeSpacing(value); break;
-    case RawSamples: takeRawType(value); break;
-    case 'a': takeAlgorithm(value); break;
-    default: takeFlag(code); break;
+    case 'h':
+    case 't':
+    case 'p':
+    case Scene:
+    case Output:
+    case FlightFile:
+    case Record:
+        takeFile(code, value);
+        break;
+    case 'A':
+    case 'F':
+    case 'e':
+    case 'r':
+    case 'g':
+    case Frames:
+    case HeightScale:
+    case Channel:
+    case MeasureError:
+        takeNumber(code, value);
+        break;
+    case Offscreen:
+    case RawSize:
+        takeSize(code, value);
+        break;
+    case Spacing:
+        takeSpacing(value);
+        break;
+    case RawSamples:
+        takeRawType(value);
+        break;
+    case 'a':
+        takeAlgorithm(value);
+        break;
+    default:
+        takeFlag(code);
+        break;
     }
 }
 
-void Reader::takeFlag(int code)
-{
+void Reader::takeFlag(int code) {
     switch (code) {
-    case 'f': options.fullScreen = true; break;
-    case 'c': options.frustumCulling = true; break;
-    case 'v': options.animate = true; break;
-    case 's': options.synchronize = true; break;
-    case Stats: options.stats = true; break;
-    case Help: options.help = true; break;
-    case Version: options.version = true; break;
-    default: break;
+    case 'f':
+        options.fullScreen = true;
+        break;
+    case 'c':
+        options.frustumCulling = true;
+        break;
+    case 'v':
+        options.animate = true;
+        break;
+    case 's':
+        options.synchronize = true;
+        break;
+    case Stats:
+        options.stats = true;
+        break;
+    case Help:
+        options.help = true;
+        break;
+    case Version:
+        options.version = true;
+        break;
+    default:
+        break;
     }
 }
 
-void Reader::takeFile(int code, const char* value)
-{
+void Reader::takeFile(int code, const char* value) {
     if (!*value) return refuse(optionName(code), "a file name", "nothing");
     switch (code) {
-    case 'h': options.heightMap = value; break;
-    case 't': options.texture = value; break;
-    case 'p': options.profile = value; break;
-    case Scene: options.scene = value; break;
-    case FlightFile: options.flight = value; break;
-    case Record: options.record = value; break;
-    default: options.output = value; break;
+    case 'h':
+        options.heightMap = value;
+        break;
+    case 't':
+        options.texture = value;
+        break;
+    case 'p':
+        options.profile = value;
+        break;
+    case Scene:
+        options.scene = value;
+        break;
+    case FlightFile:
+        options.flight = value;
+        break;
+    case Record:
+        options.record = value;
+        break;
+    default:
+        options.output = value;
+        break;
     }
 }
 
-void Reader::takeNumber(int code, const char* value)
-{
+void Reader::takeNumber(int code, const char* value) {
     switch (code) {
-    case 'A': number(code, value, 0.0, true, options.animationTime); break;
-    case 'F': number(code, value, 0.0, true, options.frameTime); break;
-    case 'e': number(code, value, 0.0, false, options.pixelError); break;
-    case HeightScale: number(code, value, 0.0, true, options.heightScale); break;
-    case 'r': whole(code, value, 0, options.triangleCount); break;
-    case 'g': whole(code, value, 2, options.tileSize); break;
-    case Channel: whole(code, value, 0, options.channel); break;
-    case Frames: whole(code, value, 1, options.frames); break;
-    default: whole(code, value, 1, options.measureError); break;
+    case 'A':
+        number(code, value, 0.0, true, options.animationTime);
+        break;
+    case 'F':
+        number(code, value, 0.0, true, options.frameTime);
+        break;
+    case 'e':
+        number(code, value, 0.0, false, options.pixelError);
+        break;
+    case HeightScale:
+        number(code, value, 0.0, true, options.heightScale);
+        break;
+    case 'r':
+        whole(code, value, 0, options.triangleCount);
+        break;
+    case 'g':
+        whole(code, value, 2, options.tileSize);
+        break;
+    case Channel:
+        whole(code, value, 0, options.channel);
+        break;
+    case Frames:
+        whole(code, value, 1, options.frames);
+        break;
+    default:
+        whole(code, value, 1, options.measureError);
+        break;
     }
 }
 
-void Reader::number(int code, const char* value, double lowest, bool exclusive, std::optional<double>& target)
-{
+void Reader::number(int code, const char* value, double lowest, bool exclusive, std::optional<double>& target) {
     target = readNumber<double>(value);
     if (target && (exclusive ? *target > lowest : *target >= lowest)) return;
     refuse(optionName(code), exclusive ? "a number above 0" : "a number of at least 0", std::string("\"") + value + "\"");
 }
 
-void Reader::whole(int code, const char* value, int lowest, std::optional<int>& target)
-{
+void Reader::whole(int code, const char* value, int lowest, std::optional<int>& target) {
     target = readNumber<int>(value);
     if (target && *target >= lowest) return;
     refuse(optionName(code), "a whole number of at least " + std::to_string(lowest), std::string("\"") + value + "\"");
 }
 
-void Reader::takeAlgorithm(const char* value)
-{
+void Reader::takeAlgorithm(const char* value) {
     options.algorithm = findAlgorithm(value);
     if (!options.algorithm) refuse("-a", "one of " + algorithmNames(), std::string("\"") + value + "\"");
 }
 
-void Reader::takeSpacing(const char* value)
-{
+void Reader::takeSpacing(const char* value) {
     options.spacing = readPair(value, ',');
     if (options.spacing && options.spacing->x > 0.0 && options.spacing->y > 0.0) return;
     refuse("--spacing", "X or X,Y above 0", std::string("\"") + value + "\"");
 }
 
-void Reader::takeSize(int code, const char* value)
-{
+void Reader::takeSize(int code, const char* value) {
     if (code == RawSize) {
         options.rawSize = readSize(value, 2, std::numeric_limits<int>::max());
         if (!options.rawSize) refuse("--raw-size", "COLUMNSxROWS of at least 2x2", std::string("\"") + value + "\"");
@@ -220,8 +296,7 @@ void Reader::takeSize(int code, const char* value)
     if (!options.offscreen) refuse("--offscreen", "WIDTHxHEIGHT in pixels", std::string("\"") + value + "\"");
 }
 
-void Reader::takeRawType(const char* value)
-{
+void Reader::takeRawType(const char* value) {
     std::string known;
     for (const auto& raw : rawTypes) {
         if (raw.name == value) options.rawType = raw.type;
@@ -232,17 +307,19 @@ void Reader::takeRawType(const char* value)
 }
 
 // What getopt found wrong at its current place.
-void refuseOption(Reader& reader, int code, char* const argv[])
-{
+void refuseOption(Reader& reader, int code, char* const argv[]) {
     const std::string word = optind > 0 ? argv[optind - 1] : "";
-    if (code == ':') reader.refuse(optopt < 256 ? std::string("-") + char(optopt) : word, "a value", "the end of the line");
-    else if (optopt == 0) reader.refuse(word, "a known option", "an unknown or ambiguous one");
-    else if (optopt >= 256 || word.starts_with("--")) reader.refuse(word, "no value", "one");
-    else reader.refuse(std::string("-") + char(optopt), "a known option", "an unknown one");
+    if (code == ':')
+        reader.refuse(optopt < 256 ? std::string("-") + char(optopt) : word, "a value", "the end of the line");
+    else if (optopt == 0)
+        reader.refuse(word, "a known option", "an unknown or ambiguous one");
+    else if (optopt >= 256 || word.starts_with("--"))
+        reader.refuse(word, "no value", "one");
+    else
+        reader.refuse(std::string("-") + char(optopt), "a known option", "an unknown one");
 }
 
-void checkCombination(Reader& reader)
-{
+void checkCombination(Reader& reader) {
     const Options& o = reader.options;
     if (o.heightMap.empty() && o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "neither");
     if (!o.heightMap.empty() && !o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "both");
@@ -251,26 +328,29 @@ void checkCombination(Reader& reader)
         reader.refuse("--channel, --raw-size, --raw-type", "-h heightmap (a scene's SoHeightMap has fields for them)", "--scene");
     }
     if (!o.scene.empty() && o.algorithm) reader.refuse("-a", "-h heightmap (a scene file names its nodes itself)", "--scene");
-    if (!o.scene.empty() && !o.texture.empty()) reader.refuse("-t", "-h heightmap (a scene file names its textures itself)", "--scene");
+    if (!o.scene.empty() && !o.texture.empty())
+        reader.refuse("-t", "-h heightmap (a scene file names its textures itself)", "--scene");
     if (o.output.empty()) return;
     if (!o.offscreen) reader.refuse("--output", "--offscreen with it", "a window");
     const auto problem = checkFrameName(o.output);
     if (problem && !reader.problem) reader.problem = *problem;
     const bool many = o.animate || !o.flight.empty() || o.frames.value_or(1) > 1;
-    if (!problem && many && !hasFrameNumber(o.output)) reader.refuse("--output", "a name with %d or %04d for several frames", o.output);
+    if (!problem && many && !hasFrameNumber(o.output))
+        reader.refuse("--output", "a name with %d or %04d for several frames", o.output);
 }
 
 }  // namespace
 
-Result<Options> parseOptions(int argc, char* const argv[])
-{
+Result<Options> parseOptions(int argc, char* const argv[]) {
     Reader reader;
     optind = 0;  // 0 makes glibc start afresh, also within one process
     opterr = 0;
     int code = 0;
     while (!reader.problem && (code = getopt_long(argc, argv, "+:h:t:p:a:A:F:e:r:g:fcvs", longOptions, nullptr)) != -1) {
-        if (code == '?' || code == ':') refuseOption(reader, code, argv);
-        else reader.take(code, optarg);
+        if (code == '?' || code == ':')
+            refuseOption(reader, code, argv);
+        else
+            reader.take(code, optarg);
     }
     if (!reader.problem && optind < argc) reader.refuse("command line", "options only", std::string("\"") + argv[optind] + "\"");
     if (!reader.problem && !reader.options.help && !reader.options.version) checkCombination(reader);
@@ -278,8 +358,7 @@ Result<Options> parseOptions(int argc, char* const argv[])
     return reader.options;
 }
 
-std::string usage()
-{
+std::string usage() {
     return "Usage: SoTerrainTest -h heightmap [-t texture] [-p profile_file] [-a algorithm] [-A animation_time]\n"
            "         [-F frame_time] [-e pixel_error] [-r triangle_count] [-g tile_size] [-f] [-c] [-v] [-s] [long options]\n"
            "       SoTerrainTest --scene file.iv [options]\n"

@@ -13,32 +13,32 @@
 namespace app {
 
 struct Options {
-    std::string heightMap;                   ///< -h
-    std::string scene;                       ///< --scene
-    std::string texture;                     ///< -t
-    std::string profile;                     ///< -p
-    std::string flight;                      ///< --flight
-    std::string record;                      ///< --record
-    std::string output;                      ///< --output
-    const Algorithm* algorithm = nullptr;    ///< -a; null: roam for a height map, whatever a scene file holds for a scene
-    std::optional<double> animationTime;     ///< -A, milliseconds
-    std::optional<double> frameTime;         ///< -F, milliseconds
-    std::optional<double> pixelError;        ///< -e, pixels
-    std::optional<int> triangleCount;        ///< -r
-    std::optional<int> tileSize;             ///< -g, samples
-    std::optional<int> frames;               ///< --frames
-    std::optional<int> measureError;         ///< --measure-error: every so many frames
-    std::optional<glm::dvec2> spacing;       ///< --spacing
-    std::optional<double> heightScale;       ///< --height-scale
-    std::optional<int> channel;              ///< --channel, from 0
-    std::optional<glm::ivec2> rawSize;       ///< --raw-size, columns and rows
+    std::string heightMap;                    ///< -h
+    std::string scene;                        ///< --scene
+    std::string texture;                      ///< -t
+    std::string profile;                      ///< -p
+    std::string flight;                       ///< --flight
+    std::string record;                       ///< --record
+    std::string output;                       ///< --output
+    const Algorithm* algorithm = nullptr;     ///< -a; null: roam for a height map, whatever a scene file holds for a scene
+    std::optional<double> animationTime;      ///< -A, milliseconds
+    std::optional<double> frameTime;          ///< -F, milliseconds
+    std::optional<double> pixelError;         ///< -e, pixels
+    std::optional<int> triangleCount;         ///< -r
+    std::optional<int> tileSize;              ///< -g, samples
+    std::optional<int> frames;                ///< --frames
+    std::optional<int> measureError;          ///< --measure-error: every so many frames
+    std::optional<glm::dvec2> spacing;        ///< --spacing
+    std::optional<double> heightScale;        ///< --height-scale
+    std::optional<int> channel;               ///< --channel, from 0
+    std::optional<glm::ivec2> rawSize;        ///< --raw-size, columns and rows
     std::optional<terrain::RawType> rawType;  ///< --raw-type
-    std::optional<glm::ivec2> offscreen;     ///< --offscreen, pixels
-    bool fullScreen = false;                 ///< -f
-    bool frustumCulling = false;             ///< -c
-    bool animate = false;                    ///< -v
-    bool synchronize = false;                ///< -s
-    bool stats = false;                      ///< --stats
+    std::optional<glm::ivec2> offscreen;      ///< --offscreen, pixels
+    bool fullScreen = false;                  ///< -f
+    bool frustumCulling = false;              ///< -c
+    bool animate = false;                     ///< -v
+    bool synchronize = false;                 ///< -s
+    bool stats = false;                       ///< --stats
     bool help = false;
     bool version = false;
 

@@ -16,20 +16,17 @@ namespace app {
 namespace {
 
 // Four digits after the point are more than any clock here knows.
-double rounded(double value)
-{
+double rounded(double value) {
     return std::round(value * 1e4) / 1e4;
 }
 
-double roundedMedian(const std::vector<double>& values)
-{
+double roundedMedian(const std::vector<double>& values) {
     return rounded(summarize(values).median);
 }
 
 }  // namespace
 
-terrain::Result<ProfileWriter> ProfileWriter::open(const std::string& path)
-{
+terrain::Result<ProfileWriter> ProfileWriter::open(const std::string& path) {
     ProfileWriter writer;
     writer.file_.open(path, std::ios::trunc);
     if (!writer.file_) return terrain::Error{path, "a file that can be written", "no permission, or no such folder"};
@@ -38,25 +35,26 @@ terrain::Result<ProfileWriter> ProfileWriter::open(const std::string& path)
     return writer;
 }
 
-void ProfileWriter::write(const FrameFigures& f)
-{
+void ProfileWriter::write(const FrameFigures& f) {
     file_ << f.frame << ',' << f.timeMs << ',' << f.frameMs << ',';
-    if (f.terrain) file_ << f.terrain->selectMs << ',' << f.terrain->uploadMs << ',' << f.terrain->drawMs << ',';
-    else file_ << ",,,";
+    if (f.terrain)
+        file_ << f.terrain->selectMs << ',' << f.terrain->uploadMs << ',' << f.terrain->drawMs << ',';
+    else
+        file_ << ",,,";
     file_ << f.triangles << ',';
-    if (f.terrain) file_ << f.terrain->patches << ',' << f.terrain->errorPixels << ',' << f.terrain->memoryBytes + f.terrain->bufferBytes;
-    else file_ << ",,";
+    if (f.terrain)
+        file_ << f.terrain->patches << ',' << f.terrain->errorPixels << ',' << f.terrain->memoryBytes + f.terrain->bufferBytes;
+    else
+        file_ << ",,";
     file_ << '\n';
 }
 
-bool ProfileWriter::close()
-{
+bool ProfileWriter::close() {
     file_.close();
     return !file_.fail();
 }
 
-void FrameStatistics::add(const FrameFigures& figures)
-{
+void FrameStatistics::add(const FrameFigures& figures) {
     frame_.push_back(figures.frameMs);
     triangles_.push_back(double(figures.triangles));
     if (!figures.terrain) return;
@@ -69,17 +67,15 @@ void FrameStatistics::add(const FrameFigures& figures)
     bufferBytes_ = std::max(bufferBytes_, t.bufferBytes);
 }
 
-void FrameStatistics::setStart(double loadMs, double firstFrameMs)
-{
+void FrameStatistics::setStart(double loadMs, double firstFrameMs) {
     loadMs_ = loadMs;
     firstFrameMs_ = firstFrameMs;
 }
 
-std::string FrameStatistics::line() const
-{
+std::string FrameStatistics::line() const {
     char text[160];
-    std::snprintf(text, sizeof text, "%zu %s, median %.2f ms, mean %.0f triangles", frame_.size(), frame_.size() == 1 ? "frame" : "frames",
-                  summarize(frame_).median, summarize(triangles_).mean);
+    std::snprintf(text, sizeof text, "%zu %s, median %.2f ms, mean %.0f triangles", frame_.size(),
+                  frame_.size() == 1 ? "frame" : "frames", summarize(frame_).median, summarize(triangles_).mean);
     std::string line = text;
     if (!select_.empty()) {
         std::snprintf(text, sizeof text, ", worst error bound %.2f px", errorBound_);
@@ -88,8 +84,7 @@ std::string FrameStatistics::line() const
     return line;
 }
 
-std::string FrameStatistics::json(const std::string& algorithm, const std::string& renderer) const
-{
+std::string FrameStatistics::json(const std::string& algorithm, const std::string& renderer) const {
     const Summary frame = summarize(frame_), triangles = summarize(triangles_);
     nlohmann::ordered_json out;
     out["algorithm"] = algorithm;
@@ -105,8 +100,11 @@ std::string FrameStatistics::json(const std::string& algorithm, const std::strin
         out["bytes"] = {{"memory", memoryBytes_}, {"buffers", bufferBytes_}};
     }
     if (!errors_.frames.empty()) {
-        out["measured_error_px"] = {{"rms", rounded(errors_.rms())}, {"p999", rounded(errors_.quantile(0.999))},
-                                    {"max", rounded(errors_.maximum())}, {"samples", errors_.samples()}, {"not_drawn", errors_.missing}};
+        out["measured_error_px"] = {{"rms", rounded(errors_.rms())},
+                                    {"p999", rounded(errors_.quantile(0.999))},
+                                    {"max", rounded(errors_.maximum())},
+                                    {"samples", errors_.samples()},
+                                    {"not_drawn", errors_.missing}};
     }
     out["start_ms"] = {{"load", rounded(loadMs_)}, {"first_frame", rounded(firstFrameMs_)}};
     // File names may hold any bytes; JSON only UTF-8.

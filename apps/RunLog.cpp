@@ -7,8 +7,7 @@ namespace app {
 using terrain::Error;
 using terrain::Result;
 
-Result<RunLog> RunLog::open(const Options& options, Scene& scene)
-{
+Result<RunLog> RunLog::open(const Options& options, Scene& scene) {
     RunLog log;
     if (!options.profile.empty()) {
         auto profile = ProfileWriter::open(options.profile);
@@ -29,8 +28,7 @@ Result<RunLog> RunLog::open(const Options& options, Scene& scene)
     return log;
 }
 
-void RunLog::frame(int frame, double timeMs, double frameMs, Scene& scene)
-{
+void RunLog::frame(int frame, double timeMs, double frameMs, Scene& scene) {
     FrameFigures figures = scene.figures();
     figures.frame = frame;
     figures.timeMs = timeMs;
@@ -40,16 +38,14 @@ void RunLog::frame(int frame, double timeMs, double frameMs, Scene& scene)
     if (flight_) flight_->write(timeMs, scene.pose());
 }
 
-std::optional<Error> RunLog::measure(const std::function<void()>& draw)
-{
+std::optional<Error> RunLog::measure(const std::function<void()>& draw) {
     const auto measured = meter_->measure(draw);
     if (!measured) return measured.error();
     statistics_.add(measured.value());
     return std::nullopt;
 }
 
-std::optional<Error> RunLog::finish(const Options& options, const Scene& scene, const std::string& renderer)
-{
+std::optional<Error> RunLog::finish(const Options& options, const Scene& scene, const std::string& renderer) {
     meter_.reset();
     if (profile_ && !profile_->close()) return Error{options.profile, "a profile written to its end", "a write error"};
     if (flight_ && !flight_->close()) return Error{options.record, "a flight written to its end", "a write error"};
@@ -67,8 +63,7 @@ std::optional<Error> RunLog::finish(const Options& options, const Scene& scene, 
     return std::nullopt;
 }
 
-Result<Animation> Animation::make(const Options& options, const Scene& scene)
-{
+Result<Animation> Animation::make(const Options& options, const Scene& scene) {
     std::optional<Flight> flight;
     if (options.flight.empty()) {
         flight = standardFlight(scene.flightArea(), options.animationTime.value_or(Options::defaultAnimationTime));

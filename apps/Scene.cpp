@@ -14,15 +14,13 @@ namespace app {
 
 namespace {
 
-SoTerrainShape* asTerrain(SoNode* node)
-{
+SoTerrainShape* asTerrain(SoNode* node) {
     if (!node || !node->isOfType(SoTerrainShape::getClassTypeId())) return nullptr;
     return static_cast<SoTerrainShape*>(node);
 }
 
 // Nearest and farthest point of a box along the direction of view.
-void boxRange(const SbBox3f& box, const Pose& pose, float& nearest, float& farthest)
-{
+void boxRange(const SbBox3f& box, const Pose& pose, float& nearest, float& farthest) {
     SbVec3f direction;
     pose.orientation.multVec(SbVec3f(0.0f, 0.0f, -1.0f), direction);
     nearest = 1e30f;
@@ -38,28 +36,26 @@ void boxRange(const SbBox3f& box, const Pose& pose, float& nearest, float& farth
 
 }  // namespace
 
-float Scene::size() const
-{
+float Scene::size() const {
     const SbVec3f extent = box_.getMax() - box_.getMin();
     const float side = std::max(extent[0], extent[1]);
     return side > 0.0f ? side : 1.0f;
 }
 
-FlightArea Scene::flightArea() const
-{
+FlightArea Scene::flightArea() const {
     const SbVec3f extent = box_.getMax() - box_.getMin();
     // The standard placement has heights up to 0.051 and flies at 0.07; elsewhere that gap over the highest point is kept.
     FlightArea area{box_.getMin(), extent[0], extent[1], box_.getMax()[2] + (0.07f - float(standardHeight)) * size()};
     if (!grid_) return area;
     area.width = float(grid_->columns * grid_->spacing.x);
     area.depth = float(grid_->rows * grid_->spacing.y);
-    const bool standard = area.width == 1.0f && area.depth == 1.0f && grid_->minimum >= 0.0 && grid_->maximum <= 1.001 * standardHeight;
+    const bool standard =
+        area.width == 1.0f && area.depth == 1.0f && grid_->minimum >= 0.0 && grid_->maximum <= 1.001 * standardHeight;
     if (standard) area.altitude = 0.07f;
     return area;
 }
 
-void Scene::setPose(const Pose& pose)
-{
+void Scene::setPose(const Pose& pose) {
     camera_->position = pose.position;
     camera_->orientation = pose.orientation;
     if (!ownClipping_ || box_.isEmpty()) return;
@@ -70,13 +66,11 @@ void Scene::setPose(const Pose& pose)
     camera_->nearDistance = std::max(nearest * 0.99f, depth * 1e-3f);
 }
 
-Pose Scene::pose() const
-{
+Pose Scene::pose() const {
     return {camera_->position.getValue(), camera_->orientation.getValue()};
 }
 
-std::optional<float> Scene::groundHeight(const SbVec3f& point) const
-{
+std::optional<float> Scene::groundHeight(const SbVec3f& point) const {
     SoTerrainShape* shape = asTerrain(terrain_);
     if (!shape) return grid_ ? grid_->heightAt(point[0], point[1]) : std::nullopt;
     SoGetMatrixAction matrices(SbViewportRegion(1, 1));
@@ -89,8 +83,7 @@ std::optional<float> Scene::groundHeight(const SbVec3f& point) const
     return world[2];
 }
 
-FrameFigures Scene::figures()
-{
+FrameFigures Scene::figures() {
     FrameFigures figures;
     if (SoTerrainShape* shape = asTerrain(terrain_)) {
         const SoTerrainStatistics s = shape->getStatistics();
@@ -115,21 +108,18 @@ FrameFigures Scene::figures()
     return figures;
 }
 
-terrain::Result<std::unique_ptr<ErrorMeter>> Scene::makeErrorMeter()
-{
+terrain::Result<std::unique_ptr<ErrorMeter>> Scene::makeErrorMeter() {
     if (!grid_) return terrain::Error{"--measure-error", "a terrain over an SoHeightMap", "none"};
     SoNode* parent = terrainPath_->getNodeFromTail(1);
     return std::make_unique<ErrorMeter>(*grid_, static_cast<SoGroup*>(parent), terrain_);
 }
 
-void Scene::setWireframe(bool on)
-{
+void Scene::setWireframe(bool on) {
     drawStyle_->style = on ? SoDrawStyle::LINES : SoDrawStyle::FILLED;
     drawStyle_->setOverride(on);
 }
 
-bool Scene::wireframe() const
-{
+bool Scene::wireframe() const {
     return drawStyle_->style.getValue() == SoDrawStyle::LINES;
 }
 

@@ -45,8 +45,8 @@ public:
     Pose pose() const;
     /// Height of the ground under a point of the scene, if there is ground.
     std::optional<float> groundHeight(const SbVec3f& point) const;
-    /// Statistics of the latest frame; the caller fills in frame and times. Triangles of shapes that are not ours are counted, which
-    /// is done once.
+    /// Statistics of the latest frame; the caller fills in frame and times. Triangles of shapes that are not ours are counted,
+    /// which is done once.
     FrameFigures figures();
     /// A meter for the terrain. Error: nothing is known about its full-resolution data.
     terrain::Result<std::unique_ptr<ErrorMeter>> makeErrorMeter();

@@ -62,16 +62,14 @@ private:
     Scene scene_;
 };
 
-void SceneBuilder::addRoot()
-{
+void SceneBuilder::addRoot() {
     scene_.root_ = NodePtr(new SoSeparator);
     scene_.root_->renderCaching = SoSeparator::OFF;
     scene_.drawStyle_ = new SoDrawStyle;
     scene_.root_->addChild(scene_.drawStyle_);
 }
 
-void SceneBuilder::addCamera()
-{
+void SceneBuilder::addCamera() {
     auto* camera = new SoPerspectiveCamera;
     auto* light = new SoDirectionalLight;
     light->direction.setValue(0.5f, 0.5f, -1.0f);
@@ -86,8 +84,7 @@ void SceneBuilder::addCamera()
 }
 
 // White under a texture, which the light then shows in its own colours; the colour of earth without one.
-void SceneBuilder::addMaterial()
-{
+void SceneBuilder::addMaterial() {
     auto* material = new SoMaterial;
     const SbColor color = options_.texture.empty() ? SbColor(0.62f, 0.57f, 0.47f) : SbColor(1.0f, 1.0f, 1.0f);
     material->diffuseColor = color;
@@ -97,27 +94,27 @@ void SceneBuilder::addMaterial()
 
 // A flag that names a field the shape does not have is said to have no effect, and the program goes on.
 template <class Field, class Value>
-void SceneBuilder::setField(const char* flag, const char* name, const std::optional<Value>& value)
-{
+void SceneBuilder::setField(const char* flag, const char* name, const std::optional<Value>& value) {
     if (!value || !scene_.terrain_) return;
-    if (auto* field = dynamic_cast<Field*>(scene_.terrain_->getField(name))) field->setValue(*value);
-    else std::fprintf(stderr, "SoTerrainTest: %s has no effect on %s\n", flag, scene_.algorithm_.c_str());
+    if (auto* field = dynamic_cast<Field*>(scene_.terrain_->getField(name)))
+        field->setValue(*value);
+    else
+        std::fprintf(stderr, "SoTerrainTest: %s has no effect on %s\n", flag, scene_.algorithm_.c_str());
 }
 
-void SceneBuilder::setFields()
-{
+void SceneBuilder::setFields() {
     const std::optional<float> error = options_.pixelError ? std::optional(float(*options_.pixelError)) : std::nullopt;
     setField<SoSFFloat>("-e", "pixelError", error);
     setField<SoSFInt32>("-r", "triangleCount", options_.triangleCount);
     setField<SoSFInt32>("-g", "tileSize", options_.tileSize);
-    if (options_.frustumCulling) setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(TRUE));
+    if (options_.frustumCulling)
+        setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(TRUE));
     else if (options_.scene.empty() && scene_.terrain_->getField("frustumCulling")) {
         setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(FALSE));
     }
 }
 
-void SceneBuilder::addHeightMap()
-{
+void SceneBuilder::addHeightMap() {
     const TerrainGrid& grid = *scene_.grid_;
     auto* map = new SoHeightMap;
     map->filename = options_.heightMap.c_str();
@@ -130,8 +127,7 @@ void SceneBuilder::addHeightMap()
     scene_.root_->addChild(map);
 }
 
-std::optional<Error> SceneBuilder::addCoinArrays(Feed feed)
-{
+std::optional<Error> SceneBuilder::addCoinArrays(Feed feed) {
     const TerrainGrid& grid = *scene_.grid_;
     if (!grid.source->map() || double(grid.columns) * grid.rows > maxCoinSamples) {
         return Error{options_.heightMap, "a map that fits into memory and 32-bit indices, for Coin's own shapes",
@@ -148,13 +144,16 @@ std::optional<Error> SceneBuilder::addCoinArrays(Feed feed)
     return std::nullopt;
 }
 
-std::optional<Error> SceneBuilder::addTerrain(const Algorithm& algorithm)
-{
+std::optional<Error> SceneBuilder::addTerrain(const Algorithm& algorithm) {
     scene_.algorithm_ = algorithm.name;
-    if (algorithm.feed == Feed::HeightMap) addHeightMap();
-    else if (auto problem = addCoinArrays(algorithm.feed)) return problem;
-    if (algorithm.feed == Feed::QuadMesh) scene_.terrain_ = makeQuadMesh(*scene_.grid_);
-    else if (algorithm.feed == Feed::IndexedFaceSet) scene_.terrain_ = makeFaceSet(*scene_.grid_);
+    if (algorithm.feed == Feed::HeightMap)
+        addHeightMap();
+    else if (auto problem = addCoinArrays(algorithm.feed))
+        return problem;
+    if (algorithm.feed == Feed::QuadMesh)
+        scene_.terrain_ = makeQuadMesh(*scene_.grid_);
+    else if (algorithm.feed == Feed::IndexedFaceSet)
+        scene_.terrain_ = makeFaceSet(*scene_.grid_);
     else {
         const SoType type = SoType::fromName(algorithm.className);
         if (!type.canCreateInstance()) return Error{"-a", "an algorithm of this build", std::string(algorithm.name)};
@@ -170,8 +169,7 @@ std::optional<Error> SceneBuilder::addTerrain(const Algorithm& algorithm)
     return std::nullopt;
 }
 
-std::optional<Error> SceneBuilder::fromHeightMap()
-{
+std::optional<Error> SceneBuilder::fromHeightMap() {
     terrain::HeightFileOptions how;
     how.channel = options_.channel.value_or(how.channel);
     how.rawSize = options_.rawSize.value_or(how.rawSize);
@@ -199,8 +197,7 @@ std::optional<Error> SceneBuilder::fromHeightMap()
     return std::nullopt;
 }
 
-SoPath* SceneBuilder::find(SoType type, bool derived) const
-{
+SoPath* SceneBuilder::find(SoType type, bool derived) const {
     SoSearchAction search;
     search.setType(type, derived);
     search.setInterest(SoSearchAction::FIRST);
@@ -211,8 +208,7 @@ SoPath* SceneBuilder::find(SoType type, bool derived) const
 }
 
 // The first of our shapes, or else the first shape.
-void SceneBuilder::chooseTerrain()
-{
+void SceneBuilder::chooseTerrain() {
     SoPath* path = find(SoTerrainShape::getClassTypeId(), true);
     if (!path) path = find(SoShape::getClassTypeId(), true);
     if (!path) return;
@@ -223,8 +219,7 @@ void SceneBuilder::chooseTerrain()
 }
 
 // The nodes have told what is wrong with the file; the program must not go on with a scene that lacks its terrain.
-std::optional<Error> SceneBuilder::checkHeightMaps() const
-{
+std::optional<Error> SceneBuilder::checkHeightMaps() const {
     SoSearchAction search;
     search.setType(SoHeightMap::getClassTypeId());
     search.setInterest(SoSearchAction::ALL);
@@ -241,8 +236,7 @@ std::optional<Error> SceneBuilder::checkHeightMaps() const
 }
 
 // A scene whose terrain stands on a file can be measured against that file.
-void SceneBuilder::readGridOfScene()
-{
+void SceneBuilder::readGridOfScene() {
     SoPath* path = find(SoHeightMap::getClassTypeId(), true);
     if (!path || !scene_.terrain_) return;
     const NodePtr<SoPath> held(path);
@@ -268,8 +262,7 @@ void SceneBuilder::readGridOfScene()
 }
 
 // The camera of the file, or one that sees everything: from the south and above where there is a terrain, as a viewer's elsewhere.
-void SceneBuilder::placeSceneCamera()
-{
+void SceneBuilder::placeSceneCamera() {
     SoPath* path = find(SoCamera::getClassTypeId(), true);
     if (path) {
         const NodePtr<SoPath> held(path);
@@ -289,8 +282,7 @@ void SceneBuilder::placeSceneCamera()
     scene_.setPose(scene_.home_);
 }
 
-std::optional<Error> SceneBuilder::fromFile()
-{
+std::optional<Error> SceneBuilder::fromFile() {
     SoInput input;
     if (!input.openFile(options_.scene.c_str(), TRUE)) {
         return Error{options_.scene, "a readable scene file", "no such file, or no permission"};
@@ -317,8 +309,7 @@ std::optional<Error> SceneBuilder::fromFile()
     return std::nullopt;
 }
 
-Result<Scene> Scene::build(const Options& options)
-{
+Result<Scene> Scene::build(const Options& options) {
     SceneBuilder builder(options);
     if (auto problem = options.scene.empty() ? builder.fromHeightMap() : builder.fromFile()) return *problem;
     return builder.take();

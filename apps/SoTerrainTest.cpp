@@ -13,14 +13,12 @@
 
 namespace {
 
-int fail(const terrain::Error& error)
-{
+int fail(const terrain::Error& error) {
     std::fprintf(stderr, "SoTerrainTest: %s\n", error.message().c_str());
     return EXIT_FAILURE;
 }
 
-int show(const app::Options& options)
-{
+int show(const app::Options& options) {
     const double started = app::nowMs();
     // The window system comes first: without one there is no reason to read a large map.
     if (!options.offscreen) {
@@ -36,8 +34,7 @@ int show(const app::Options& options)
 
 }  // namespace
 
-int main(int argc, char** argv)
-{
+int main(int argc, char** argv) {
     const auto options = app::parseOptions(argc, argv);
     if (!options) {
         std::fprintf(stderr, "SoTerrainTest: %s\n%s", options.error().message().c_str(), app::usage().c_str());

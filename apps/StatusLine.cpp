@@ -10,8 +10,7 @@
 
 namespace app {
 
-StatusLine::StatusLine() : root_(new SoSeparator)
-{
+StatusLine::StatusLine() : root_(new SoSeparator) {
     // A unit square over the whole picture, whatever its shape.
     auto* camera = new SoOrthographicCamera;
     camera->viewportMapping = SoCamera::LEAVE_ALONE;
@@ -32,8 +31,7 @@ StatusLine::StatusLine() : root_(new SoSeparator)
     addText(0.0f, 1.0f);
 }
 
-void StatusLine::addText(float shift, float gray)
-{
+void StatusLine::addText(float shift, float gray) {
     auto* group = new SoSeparator;
     auto* place = new SoTranslation;
     place->translation.setValue(0.012f + shift, 0.018f - shift, 0.0f);
@@ -47,8 +45,7 @@ void StatusLine::addText(float shift, float gray)
     ++count_;
 }
 
-void StatusLine::setText(const std::string& text)
-{
+void StatusLine::setText(const std::string& text) {
     for (SoText2* node : text_) {
         if (!(node->string[0] == text.c_str())) node->string = text.c_str();
     }

@@ -19,14 +19,12 @@ using terrain::Result;
 namespace {
 
 // Samples that are all whole numbers came from an integer format.
-bool isWhole(const HeightMap& map)
-{
+bool isWhole(const HeightMap& map) {
     return std::all_of(map.heights.begin(), map.heights.end(), [](float h) { return std::isnan(h) || h == std::floor(h); });
 }
 
 // Scale and offset that bring the source's range to 0..standardHeight.
-void fitHeights(const HeightSource& source, TerrainGrid& grid, double lowest, double highest)
-{
+void fitHeights(const HeightSource& source, TerrainGrid& grid, double lowest, double highest) {
     const HeightMap* map = source.map();
     if (lowest >= 0.0 && highest <= 65535.0 && (!map || isWhole(*map))) {
         grid.heightScale = standardHeight / (highest <= 255.0 ? 255.0 : 65535.0);
@@ -37,8 +35,7 @@ void fitHeights(const HeightSource& source, TerrainGrid& grid, double lowest, do
 }
 
 // The source's own distance between samples, in metres when it is in degrees; nothing when it has none.
-std::optional<glm::dvec2> ownSpacing(const HeightSource& source)
-{
+std::optional<glm::dvec2> ownSpacing(const HeightSource& source) {
     const terrain::HeightExtent extent = source.extent();
     const HeightMap* map = source.map();
     const std::string projection = map ? map->projection : std::string();
@@ -51,29 +48,29 @@ std::optional<glm::dvec2> ownSpacing(const HeightSource& source)
 
 }  // namespace
 
-std::optional<float> TerrainGrid::heightAt(float x, float y) const
-{
+std::optional<float> TerrainGrid::heightAt(float x, float y) const {
     const HeightMap* map = source ? source->map() : nullptr;
     const double column = x / spacing.x, row = y / spacing.y;
     if (!map || !(column >= 0.0 && row >= 0.0 && column <= columns - 1.0 && row <= rows - 1.0)) return std::nullopt;
     const int c = std::min(int(column), columns - 2), r = std::min(int(row), rows - 2);
     const double u = column - c, v = row - r;
     const double h00 = map->at(c, r), h10 = map->at(c + 1, r), h01 = map->at(c, r + 1), h11 = map->at(c + 1, r + 1);
-    const double h = u + v <= 1.0 ? h00 + u * (h10 - h00) + v * (h01 - h00) : h11 + (1.0 - u) * (h01 - h11) + (1.0 - v) * (h10 - h11);
+    const double h =
+        u + v <= 1.0 ? h00 + u * (h10 - h00) + v * (h01 - h00) : h11 + (1.0 - u) * (h01 - h11) + (1.0 - v) * (h10 - h11);
     if (std::isnan(h)) return std::nullopt;
     return float(h * heightScale + heightOffset);
 }
 
 Result<TerrainGrid> placeGrid(std::shared_ptr<const HeightSource> source, std::optional<glm::dvec2> spacing,
-                              std::optional<double> heightScale)
-{
+                              std::optional<double> heightScale) {
     const terrain::HeightExtent extent = source->extent();
     TerrainGrid grid{source, extent.columns, extent.rows, {}, heightScale.value_or(1.0), 0.0, 0.0, 0.0};
     // The coarsest tile knows the extremes of everything below it.
     const auto root = source->load({source->levelCount() - 1, 0, 0, 1});
     if (!root) return root.error();
     const double lowest = root.value().minimum, highest = root.value().maximum;
-    if (!std::isfinite(lowest) || !std::isfinite(highest)) return terrain::Error{"height map", "at least one finite height", "holes only"};
+    if (!std::isfinite(lowest) || !std::isfinite(highest))
+        return terrain::Error{"height map", "at least one finite height", "holes only"};
     if (!spacing) spacing = ownSpacing(*source);
     if (!spacing && !heightScale) fitHeights(*source, grid, lowest, highest);
     grid.spacing = spacing.value_or(glm::dvec2(1.0 / extent.columns, 1.0 / extent.rows));
@@ -82,8 +79,7 @@ Result<TerrainGrid> placeGrid(std::shared_ptr<const HeightSource> source, std::o
     return grid;
 }
 
-SoCoordinate3* makeCoordinates(const TerrainGrid& grid)
-{
+SoCoordinate3* makeCoordinates(const TerrainGrid& grid) {
     const HeightMap& map = *grid.source->map();
     const float lowest = float((grid.minimum - grid.heightOffset) / grid.heightScale);
     auto* node = new SoCoordinate3;
@@ -99,8 +95,7 @@ SoCoordinate3* makeCoordinates(const TerrainGrid& grid)
     return node;
 }
 
-SoNormal* makeNormals(const SoCoordinate3& coordinates, int columns, int rows)
-{
+SoNormal* makeNormals(const SoCoordinate3& coordinates, int columns, int rows) {
     const SbVec3f* point = coordinates.point.getValues(0);
     auto* node = new SoNormal;
     node->vector.setNum(columns * rows);
@@ -118,8 +113,7 @@ SoNormal* makeNormals(const SoCoordinate3& coordinates, int columns, int rows)
     return node;
 }
 
-SoTextureCoordinate2* makeTextureCoordinates(int columns, int rows, glm::dvec2 step)
-{
+SoTextureCoordinate2* makeTextureCoordinates(int columns, int rows, glm::dvec2 step) {
     auto* node = new SoTextureCoordinate2;
     node->point.setNum(columns * rows);
     SbVec2f* point = node->point.startEditing();
@@ -130,8 +124,7 @@ SoTextureCoordinate2* makeTextureCoordinates(int columns, int rows, glm::dvec2 s
     return node;
 }
 
-SoIndexedFaceSet* makeFaceSet(const TerrainGrid& grid)
-{
+SoIndexedFaceSet* makeFaceSet(const TerrainGrid& grid) {
     const HeightMap& map = *grid.source->map();
     auto* node = new SoIndexedFaceSet;
     node->coordIndex.setNum((grid.columns - 1) * (grid.rows - 1) * 8);
@@ -155,8 +148,7 @@ SoIndexedFaceSet* makeFaceSet(const TerrainGrid& grid)
     return node;
 }
 
-SoQuadMesh* makeQuadMesh(const TerrainGrid& grid)
-{
+SoQuadMesh* makeQuadMesh(const TerrainGrid& grid) {
     auto* node = new SoQuadMesh;
     node->verticesPerRow = grid.columns;
     node->verticesPerColumn = grid.rows;

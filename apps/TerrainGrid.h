@@ -19,7 +19,8 @@ class SoTextureCoordinate2;
 
 namespace app {
 
-/// Sample (column, row) with height h of the source stands at (column * spacing.x, row * spacing.y, h * heightScale + heightOffset).
+/// Sample (column, row) with height h of the source stands at (column * spacing.x, row * spacing.y, h * heightScale +
+/// heightOffset).
 struct TerrainGrid {
     std::shared_ptr<const terrain::HeightSource> source;
     int columns = 0;
@@ -30,8 +31,7 @@ struct TerrainGrid {
     double minimum = 0.0;  ///< of the placed heights
     double maximum = 0.0;
 
-    SbVec3f point(int column, int row, float height) const
-    {
+    SbVec3f point(int column, int row, float height) const {
         return SbVec3f(float(column * spacing.x), float(row * spacing.y), float(height * heightScale + heightOffset));
     }
     /// Height over (x, y) on the full-resolution triangles; nothing outside, in a hole, or when the map is not in memory.
@@ -42,8 +42,8 @@ struct TerrainGrid {
 constexpr double standardHeight = 0.051;
 
 /// Places a source. Without spacing and scale, a source without a spacing of its own spans the unit square (sample (c, r) at
-/// (c / columns, r / rows)) with heights up to standardHeight; one that has its own spacing keeps its real units, degrees turned into
-/// metres. Error: a source without any valid sample.
+/// (c / columns, r / rows)) with heights up to standardHeight; one that has its own spacing keeps its real units, degrees turned
+/// into metres. Error: a source without any valid sample.
 terrain::Result<TerrainGrid> placeGrid(std::shared_ptr<const terrain::HeightSource> source, std::optional<glm::dvec2> spacing,
                                        std::optional<double> heightScale);
 

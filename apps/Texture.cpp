@@ -8,8 +8,7 @@
 
 namespace app {
 
-terrain::Result<SoTexture2*> loadTexture(const std::string& path, bool topFirst)
-{
+terrain::Result<SoTexture2*> loadTexture(const std::string& path, bool topFirst) {
     auto read = readImage(path);
     if (!read) return read.error();
     terrain::Image image = std::move(read).value();

@@ -26,8 +26,7 @@ namespace {
 const char* const noDisplay = "no display: use --offscreen";
 
 // Qt aborts when it can't use the display; a message and an exit status serve better.
-void showMessage(QtMsgType type, const QMessageLogContext&, const QString& text)
-{
+void showMessage(QtMsgType type, const QMessageLogContext&, const QString& text) {
     if (type == QtDebugMsg || type == QtInfoMsg) return;
     std::fprintf(stderr, "SoTerrainTest: %s\n", text.toLocal8Bit().constData());
     if (type != QtFatalMsg) return;
@@ -35,17 +34,14 @@ void showMessage(QtMsgType type, const QMessageLogContext&, const QString& text)
     std::_Exit(EXIT_FAILURE);
 }
 
-bool isSet(const char* variable)
-{
+bool isSet(const char* variable) {
     const char* value = std::getenv(variable);
     return value && *value;
 }
 
-
 }  // namespace
 
-std::optional<Error> openDisplay(const char* program)
-{
+std::optional<Error> openDisplay(const char* program) {
     if (!isSet("DISPLAY") && !isSet("WAYLAND_DISPLAY") && !isSet("QT_QPA_PLATFORM")) return Error{noDisplay, "", ""};
     qInstallMessageHandler(showMessage);
     // Coin needs the fixed functions of a compatibility profile.
@@ -56,8 +52,7 @@ std::optional<Error> openDisplay(const char* program)
     return SoQt::init(program) ? std::nullopt : std::optional(Error{noDisplay, "", ""});
 }
 
-std::optional<Error> runWindow(const Options& options, Scene& scene, double startedMs)
-{
+std::optional<Error> runWindow(const Options& options, Scene& scene, double startedMs) {
     auto animation = Animation::make(options, scene);
     if (!animation) return animation.error();
     auto log = RunLog::open(options, scene);
@@ -81,13 +76,11 @@ std::optional<Error> runWindow(const Options& options, Scene& scene, double star
 
 namespace app {
 
-std::optional<terrain::Error> openDisplay(const char*)
-{
+std::optional<terrain::Error> openDisplay(const char*) {
     return terrain::Error{"window", "--offscreen", "a build without SoQt"};
 }
 
-std::optional<terrain::Error> runWindow(const Options&, Scene&, double)
-{
+std::optional<terrain::Error> runWindow(const Options&, Scene&, double) {
     return openDisplay("");
 }
 

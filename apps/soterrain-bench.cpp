@@ -59,15 +59,13 @@ const option longOptions[] = {
 };
 
 template <class Number>
-bool readNumber(const char* text, Number lowest, Number& number)
-{
+bool readNumber(const char* text, Number lowest, Number& number) {
     const char* end = text + std::strlen(text);
     const auto [stop, problem] = std::from_chars(text, end, number);
     return problem == std::errc() && stop == end && number >= lowest && number <= Number(1e6);
 }
 
-std::vector<std::string> split(std::string_view list)
-{
+std::vector<std::string> split(std::string_view list) {
     std::vector<std::string> words;
     while (!list.empty()) {
         const std::size_t comma = std::min(list.find(','), list.size());
@@ -77,25 +75,39 @@ std::vector<std::string> split(std::string_view list)
     return words;
 }
 
-bool take(int code, Arguments& arguments)
-{
+bool take(int code, Arguments& arguments) {
     app::BenchRequest& request = arguments.request;
     switch (code) {
-    case Map: request.map = optarg; return true;
-    case Texture: request.texture = optarg; return true;
-    case Frames: return readNumber(optarg, 1, request.frames);
-    case Nodes: arguments.nodes = split(optarg); return !arguments.nodes.empty();
-    case PixelError: return readNumber(optarg, 0.0, request.pixelError);
-    case ErrorEvery: return readNumber(optarg, 1, request.errorEvery);
-    case Json: arguments.json = optarg; return true;
-    case Child: arguments.child = true; request.className = optarg; return true;
-    case Help: return arguments.help = true;
-    default: return false;
+    case Map:
+        request.map = optarg;
+        return true;
+    case Texture:
+        request.texture = optarg;
+        return true;
+    case Frames:
+        return readNumber(optarg, 1, request.frames);
+    case Nodes:
+        arguments.nodes = split(optarg);
+        return !arguments.nodes.empty();
+    case PixelError:
+        return readNumber(optarg, 0.0, request.pixelError);
+    case ErrorEvery:
+        return readNumber(optarg, 1, request.errorEvery);
+    case Json:
+        arguments.json = optarg;
+        return true;
+    case Child:
+        arguments.child = true;
+        request.className = optarg;
+        return true;
+    case Help:
+        return arguments.help = true;
+    default:
+        return false;
     }
 }
 
-std::optional<Arguments> parse(int argc, char** argv)
-{
+std::optional<Arguments> parse(int argc, char** argv) {
     Arguments arguments;
     int code = 0;
     while ((code = getopt_long(argc, argv, "", longOptions, nullptr)) != -1) {
@@ -110,8 +122,7 @@ std::optional<Arguments> parse(int argc, char** argv)
 }
 
 // Runs this program again for one class and returns what it prints, or nothing when it fails.
-std::optional<ordered_json> measureInChild(const std::string& node, char** argv)
-{
+std::optional<ordered_json> measureInChild(const std::string& node, char** argv) {
     int ends[2];
     if (pipe(ends) != 0) return std::nullopt;
     const pid_t child = fork();
@@ -130,7 +141,8 @@ std::optional<ordered_json> measureInChild(const std::string& node, char** argv)
     close(ends[1]);
     std::string text;
     char buffer[4096];
-    for (ssize_t count = 0; child > 0 && (count = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, std::size_t(count));
+    for (ssize_t count = 0; child > 0 && (count = read(ends[0], buffer, sizeof buffer)) > 0;)
+        text.append(buffer, std::size_t(count));
     close(ends[0]);
     int status = -1;
     if (child < 0 || waitpid(child, &status, 0) != child || status != 0) return std::nullopt;
@@ -138,8 +150,7 @@ std::optional<ordered_json> measureInChild(const std::string& node, char** argv)
     return out.is_discarded() ? std::nullopt : std::optional(out);
 }
 
-int runChild(const app::BenchRequest& request)
-{
+int runChild(const app::BenchRequest& request) {
     app::startCoin();
     const auto result = app::runBench(request);
     if (!result) {
@@ -150,8 +161,7 @@ int runChild(const app::BenchRequest& request)
     return EXIT_SUCCESS;
 }
 
-void printRow(const ordered_json& r)
-{
+void printRow(const ordered_json& r) {
     const auto perSample = [&r](const char* key) {
         char text[16] = "-";
         if (r.contains(key)) std::snprintf(text, sizeof text, "%.1f", r[key].get<double>() / r["samples"].get<double>());
@@ -159,17 +169,18 @@ void printRow(const ordered_json& r)
     };
     const ordered_json &frame = r["frame_ms"], &cpu = r["cpu_ms"], &error = r["error_px"];
     std::printf("%-22s %8.2f %8.2f %8.2f %8.2f %10.0f %7.3f %7.3f %7.3f %8s %8s %8s %9.1f\n", r["class"].get<std::string>().c_str(),
-                frame["median"].get<double>(), frame["p95"].get<double>(), frame["worst"].get<double>(), cpu["median"].get<double>(),
-                r["triangles"].get<double>(), error["rms"].get<double>(), error["p999"].get<double>(), error["max"].get<double>(),
-                perSample("growth_bytes").c_str(), perSample("memory_bytes").c_str(), perSample("buffer_bytes").c_str(),
-                r["start_ms"].get<double>());
-    if (r["not_drawn"].get<double>() > 0) std::printf("%-22s %.0f samples in view were not drawn\n", "", r["not_drawn"].get<double>());
+                frame["median"].get<double>(), frame["p95"].get<double>(), frame["worst"].get<double>(),
+                cpu["median"].get<double>(), r["triangles"].get<double>(), error["rms"].get<double>(), error["p999"].get<double>(),
+                error["max"].get<double>(), perSample("growth_bytes").c_str(), perSample("memory_bytes").c_str(),
+                perSample("buffer_bytes").c_str(), r["start_ms"].get<double>());
+    if (r["not_drawn"].get<double>() > 0)
+        std::printf("%-22s %.0f samples in view were not drawn\n", "", r["not_drawn"].get<double>());
     std::fflush(stdout);
 }
 
-void printHead(const app::BenchRequest& request)
-{
-    std::printf("standard flight, %d frames, 1024x768, pixelError %g, %s\n", request.frames, request.pixelError, request.map.c_str());
+void printHead(const app::BenchRequest& request) {
+    std::printf("standard flight, %d frames, 1024x768, pixelError %g, %s\n", request.frames, request.pixelError,
+                request.map.c_str());
     std::printf("%-22s %26s %8s %10s %23s %26s %9s\n", "", "frame ms", "CPU ms", "triangles", "screen error px", "bytes a sample",
                 "start ms");
     std::printf("%-22s %8s %8s %8s %8s %10s %7s %7s %7s %8s %8s %8s\n", "node", "median", "p95", "worst", "median", "mean", "rms",
@@ -179,8 +190,7 @@ void printHead(const app::BenchRequest& request)
 
 }  // namespace
 
-int main(int argc, char** argv)
-{
+int main(int argc, char** argv) {
     const std::optional<Arguments> arguments = parse(argc, argv);
     if (!arguments || arguments->help) {
         std::fputs(usageText, arguments ? stdout : stderr);

@@ -15,8 +15,7 @@ struct Box {
 };
 
 /// The smallest box around two corner points.
-inline Box boxBetween(const glm::vec3& low, const glm::vec3& high)
-{
+inline Box boxBetween(const glm::vec3& low, const glm::vec3& high) {
     return {(low + high) * 0.5f, (high - low) * 0.5f};
 }
 

@@ -9,8 +9,7 @@ namespace terrain {
 
 namespace {
 
-std::uint64_t nanoseconds()
-{
+std::uint64_t nanoseconds() {
     return std::uint64_t(std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count());
 }
 
@@ -20,8 +19,7 @@ struct Total {
     std::uint64_t nanoseconds = 0;
 };
 
-std::vector<Total>& totals()
-{
+std::vector<Total>& totals() {
     thread_local std::vector<Total> all;
     return all;
 }
@@ -30,8 +28,7 @@ std::vector<Total>& totals()
 
 ProfileScope::ProfileScope(const char* name) : name_(name), start_(nanoseconds()) {}
 
-ProfileScope::~ProfileScope()
-{
+ProfileScope::~ProfileScope() {
     const std::uint64_t spent = nanoseconds() - start_;
     for (Total& total : totals())
         if (std::strcmp(total.name, name_) == 0) {
@@ -42,8 +39,7 @@ ProfileScope::~ProfileScope()
     totals().push_back({name_, 1, spent});
 }
 
-std::vector<ScopeTotal> profileTotals()
-{
+std::vector<ScopeTotal> profileTotals() {
     std::vector<ScopeTotal> result;
     for (const Total& total : totals()) result.push_back({total.name, total.count, double(total.nanoseconds) * 1e-6});
     return result;
@@ -51,8 +47,7 @@ std::vector<ScopeTotal> profileTotals()
 
 #else
 
-std::vector<ScopeTotal> profileTotals()
-{
+std::vector<ScopeTotal> profileTotals() {
     return {};
 }
 

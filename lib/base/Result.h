@@ -14,8 +14,7 @@ struct Error {
     std::string found;     ///< what was there instead
 
     /// One line: "subject: expected ..., found ...".
-    std::string message() const
-    {
+    std::string message() const {
         std::string text = subject;
         if (!expected.empty()) text += ": expected " + expected;
         if (!found.empty()) text += (expected.empty() ? ": " : ", found ") + found;

@@ -5,8 +5,7 @@
 
 namespace terrain {
 
-ScreenSpace::ScreenSpace(const View& view, const glm::dmat4& localFromFrame, ErrorDirection direction) : direction_(direction)
-{
+ScreenSpace::ScreenSpace(const View& view, const glm::dmat4& localFromFrame, ErrorDirection direction) : direction_(direction) {
     const glm::dmat4 rows = glm::transpose(view.clipFromLocal * localFromFrame);
     x_ = glm::vec4(rows[0]);
     y_ = glm::vec4(rows[1]);
@@ -20,11 +19,11 @@ ScreenSpace::ScreenSpace(const View& view, const glm::dmat4& localFromFrame, Err
         const glm::vec3 form = glm::vec3(row) - t * glm::vec3(w_);
         return direction == ErrorDirection::Vertical ? std::fabs(form.z) : glm::length(form);
     };
-    largestFactor_ = glm::length(scale_ * glm::vec2(std::max(length(x_, -1.0f), length(x_, 1.0f)), std::max(length(y_, -1.0f), length(y_, 1.0f))));
+    largestFactor_ = glm::length(
+        scale_ * glm::vec2(std::max(length(x_, -1.0f), length(x_, 1.0f)), std::max(length(y_, -1.0f), length(y_, 1.0f))));
 }
 
-float ScreenSpace::anyScreenError(float error, const Box& box) const
-{
+float ScreenSpace::anyScreenError(float error, const Box& box) const {
     const float centreW = along(w_, box.centre), nearestW = centreW - reach(w_, box.half);
     if (!(nearestW > 0.0f)) return std::numeric_limits<float>::infinity();
     const auto largest = [&](const glm::vec4& row) {

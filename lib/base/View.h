@@ -34,9 +34,9 @@ enum class ErrorDirection {
 /// Screen error. A point P of the box that is in view is drawn displaced by d (vertical: d = e u, u the third axis). With clip rows
 /// X, Y, W the displacement on screen is exactly
 ///     | (sx (X - tx W) . d, sy (Y - ty W) . d) | / W(P + d),   tx = X(P) / W(P), ty = Y(P) / W(P) in [-1, 1],
-/// with sx, sy half the viewport's size. W is bounded below over the box, which contains the drawn point too; tx and ty are bounded by
-/// their interval over the box, cut to the window. An error seen from above therefore counts for less, one near the window's corners,
-/// where a perspective image is stretched, for more. Where the box reaches behind the eye the bound is infinite.
+/// with sx, sy half the viewport's size. W is bounded below over the box, which contains the drawn point too; tx and ty are bounded
+/// by their interval over the box, cut to the window. An error seen from above therefore counts for less, one near the window's
+/// corners, where a perspective image is stretched, for more. Where the box reaches behind the eye the bound is infinite.
 class ScreenSpace {
 public:
     ScreenSpace(const View& view, const glm::dmat4& localFromFrame, ErrorDirection direction);
@@ -60,8 +60,7 @@ public:
 
 private:
     static float along(const glm::vec4& form, const glm::vec3& p) { return form.x * p.x + form.y * p.y + form.z * p.z + form.w; }
-    static float reach(const glm::vec4& form, const glm::vec3& half)
-    {
+    static float reach(const glm::vec4& form, const glm::vec3& half) {
         return std::fabs(form.x) * half.x + std::fabs(form.y) * half.y + std::fabs(form.z) * half.z;
     }
     float anyScreenError(float error, const Box& box) const;
@@ -76,9 +75,10 @@ private:
 // Defined here because a selection calls them tens of thousands of times a frame.
 
 __attribute__((always_inline)) inline float ScreenSpace::verticalScreenError(float error, float x, float y, float z, float halfX,
-                                                                              float halfY, float halfZ) const
-{
-    const auto reach3 = [&](float fx, float fy, float fz) { return std::fabs(fx) * halfX + std::fabs(fy) * halfY + std::fabs(fz) * halfZ; };
+                                                                             float halfY, float halfZ) const {
+    const auto reach3 = [&](float fx, float fy, float fz) {
+        return std::fabs(fx) * halfX + std::fabs(fy) * halfY + std::fabs(fz) * halfZ;
+    };
     const auto larger = [](float a, float b) { return a > b ? a : b; };
     const auto window = [](float t) { return t < -1.0f ? -1.0f : t > 1.0f ? 1.0f : t; };
     const float centreW = w_.x * x + w_.y * y + w_.z * z + w_.w, nearestW = centreW - reach3(w_.x, w_.y, w_.z);
@@ -87,22 +87,22 @@ __attribute__((always_inline)) inline float ScreenSpace::verticalScreenError(flo
     const float spreadX = reach3(x_.x - tx * w_.x, x_.y - tx * w_.y, x_.z - tx * w_.z) * inverseNearest;
     const float spreadY = reach3(y_.x - ty * w_.x, y_.y - ty * w_.y, y_.z - ty * w_.z) * inverseNearest;
     // Both terms are convex in tx and ty, so that the ends of the intervals bound them.
-    const float horizontal = scale_.x * larger(std::fabs(x_.z - window(tx - spreadX) * w_.z), std::fabs(x_.z - window(tx + spreadX) * w_.z));
-    const float vertical = scale_.y * larger(std::fabs(y_.z - window(ty - spreadY) * w_.z), std::fabs(y_.z - window(ty + spreadY) * w_.z));
+    const float horizontal =
+        scale_.x * larger(std::fabs(x_.z - window(tx - spreadX) * w_.z), std::fabs(x_.z - window(tx + spreadX) * w_.z));
+    const float vertical =
+        scale_.y * larger(std::fabs(y_.z - window(ty - spreadY) * w_.z), std::fabs(y_.z - window(ty + spreadY) * w_.z));
     const float pixels = error * std::sqrt(horizontal * horizontal + vertical * vertical) * inverseNearest;
     // An infinite error times a direction that shows none of it is no number.
     return nearestW > 0.0f && pixels == pixels ? pixels : std::numeric_limits<float>::infinity();
 }
 
-inline float ScreenSpace::screenError(float error, const Box& box) const
-{
+inline float ScreenSpace::screenError(float error, const Box& box) const {
     if (!(error > 0.0f)) return 0.0f;
     if (direction_ == ErrorDirection::Any) return anyScreenError(error, box);
     return verticalScreenError(error, box.centre.x, box.centre.y, box.centre.z, box.half.x, box.half.y, box.half.z);
 }
 
-inline bool ScreenSpace::isOutside(const Box& box) const
-{
+inline bool ScreenSpace::isOutside(const Box& box) const {
     return std::any_of(planes_.begin(), planes_.end(),
                        [&box](const glm::vec4& plane) { return along(plane, box.centre) + reach(plane, box.half) < 0.0f; });
 }

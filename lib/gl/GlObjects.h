@@ -9,14 +9,14 @@
 
 namespace terrain {
 
-/// One GL buffer object of the context that is current when it is filled. Nothing is deleted in the destructor, because by then another
-/// context may be current, or none: the owner takes the name by release() and deletes it where it belongs.
+/// One GL buffer object of the context that is current when it is filled. Nothing is deleted in the destructor, because by then
+/// another context may be current, or none: the owner takes the name by release() and deletes it where it belongs.
 class GlBuffer {
 public:
     /// Replaces the contents. Asks for new storage each time, so that the GPU may go on reading the old one.
     void fill(GLenum target, const void* data, std::size_t bytes, GLenum usage);
-    /// Replaces the contents, in the storage that is there if it is large enough: asking for new storage in every frame costs more than
-    /// filling it.
+    /// Replaces the contents, in the storage that is there if it is large enough: asking for new storage in every frame costs more
+    /// than filling it.
     void refill(GLenum target, const void* data, std::size_t bytes);
     /// Overwrites a part.
     void update(GLenum target, std::size_t offset, const void* data, std::size_t bytes);
@@ -34,8 +34,7 @@ private:
 /// A buffer that is filled anew in most frames: a ring of three, so that none is overwritten while the GPU may still read it.
 class GlStream {
 public:
-    void fill(GLenum target, const void* data, std::size_t bytes)
-    {
+    void fill(GLenum target, const void* data, std::size_t bytes) {
         current_ = (current_ + 1) % ring_.size();
         ring_[current_].refill(target, data, bytes);
     }

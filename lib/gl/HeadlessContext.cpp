@@ -27,14 +27,12 @@ struct HeadlessContext::Impl {
 
 namespace {
 
-bool hasClientExtension(const char* name)
-{
+bool hasClientExtension(const char* name) {
     const char* all = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     return all && std::strstr(all, name);
 }
 
-std::string eglProblem(const char* call)
-{
+std::string eglProblem(const char* call) {
     char text[64];
     std::snprintf(text, sizeof text, "%s failed (EGL error 0x%x)", call, unsigned(eglGetError()));
     return text;
@@ -43,15 +41,13 @@ std::string eglProblem(const char* call)
 // Reads from the context's frame buffer and gives the caller its read binding and pack state back.
 class ReadScope {
 public:
-    explicit ReadScope(GLuint framebuffer)
-    {
+    explicit ReadScope(GLuint framebuffer) {
         glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &framebuffer_);
         glGetIntegerv(GL_PACK_ALIGNMENT, &alignment_);
         glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
         glPixelStorei(GL_PACK_ALIGNMENT, 1);
     }
-    ~ReadScope()
-    {
+    ~ReadScope() {
         glPixelStorei(GL_PACK_ALIGNMENT, alignment_);
         glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(framebuffer_));
     }
@@ -66,8 +62,7 @@ private:
 }  // namespace
 
 // Each step returns an empty string, or what went wrong.
-std::string HeadlessContext::Impl::openDisplay()
-{
+std::string HeadlessContext::Impl::openDisplay() {
     if (!epoxy_has_egl()) return "no EGL library";
     if (!hasClientExtension("EGL_EXT_platform_base")) return "EGL without EGL_EXT_platform_base";
     EGLint major = 0, minor = 0;
@@ -87,8 +82,7 @@ std::string HeadlessContext::Impl::openDisplay()
     return "no EGL platform that works without a display";
 }
 
-std::string HeadlessContext::Impl::createContext()
-{
+std::string HeadlessContext::Impl::createContext() {
     if (!eglBindAPI(EGL_OPENGL_API)) return "EGL without desktop OpenGL";
     const EGLint attributes[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
@@ -101,8 +95,7 @@ std::string HeadlessContext::Impl::createContext()
     return epoxy_gl_version() >= 30 ? std::string() : "OpenGL " + std::to_string(epoxy_gl_version() / 10.0);
 }
 
-std::string HeadlessContext::Impl::createFramebuffer()
-{
+std::string HeadlessContext::Impl::createFramebuffer() {
     GLint side = 0, viewport[2] = {0, 0};
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &side);
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
@@ -127,8 +120,7 @@ std::string HeadlessContext::Impl::createFramebuffer()
 
 HeadlessContext::HeadlessContext() : impl_(std::make_unique<Impl>()) {}
 
-HeadlessContext::~HeadlessContext()
-{
+HeadlessContext::~HeadlessContext() {
     if (impl_->context == EGL_NO_CONTEXT) return;
     const bool current = eglGetCurrentContext() == impl_->context;
     // Only the frame buffer objects need the context; they go with it when another one is current.
@@ -141,8 +133,7 @@ HeadlessContext::~HeadlessContext()
     eglDestroyContext(impl_->display, impl_->context);
 }
 
-Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create(int width, int height)
-{
+Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create(int width, int height) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1) return Error{"offscreen frame buffer", "a size of at least 1x1", size};
     std::unique_ptr<HeadlessContext> context(new HeadlessContext);
@@ -157,20 +148,17 @@ Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create(int width, int 
     return context;
 }
 
-void HeadlessContext::makeCurrent()
-{
+void HeadlessContext::makeCurrent() {
     eglBindAPI(EGL_OPENGL_API);
     eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context);
 }
 
-void HeadlessContext::bindFramebuffer()
-{
+void HeadlessContext::bindFramebuffer() {
     glBindFramebuffer(GL_FRAMEBUFFER, impl_->framebuffer);
     glViewport(0, 0, impl_->width, impl_->height);
 }
 
-Image HeadlessContext::readColor() const
-{
+Image HeadlessContext::readColor() const {
     Image image{impl_->width, impl_->height, 3, {}};
     const std::size_t stride = std::size_t(image.width) * 3;
     image.pixels.resize(stride * std::size_t(image.height));
@@ -184,27 +172,23 @@ Image HeadlessContext::readColor() const
     return image;
 }
 
-std::vector<float> HeadlessContext::readDepth() const
-{
+std::vector<float> HeadlessContext::readDepth() const {
     std::vector<float> depth(std::size_t(impl_->width) * std::size_t(impl_->height));
     const ReadScope scope(impl_->framebuffer);
     glReadPixels(0, 0, impl_->width, impl_->height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
     return depth;
 }
 
-std::string HeadlessContext::renderer() const
-{
+std::string HeadlessContext::renderer() const {
     const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     return name ? name : "";
 }
 
-int HeadlessContext::width() const
-{
+int HeadlessContext::width() const {
     return impl_->width;
 }
 
-int HeadlessContext::height() const
-{
+int HeadlessContext::height() const {
     return impl_->height;
 }
 

@@ -18,8 +18,8 @@ struct Image {
     std::vector<std::uint8_t> pixels;
 };
 
-/// Owns an EGL display, a compatibility-profile GL context and a frame buffer with RGBA8 colour and 32-bit float depth. The context is
-/// current in the creating thread from create() on; makeCurrent() brings it back after another one was used.
+/// Owns an EGL display, a compatibility-profile GL context and a frame buffer with RGBA8 colour and 32-bit float depth. The context
+/// is current in the creating thread from create() on; makeCurrent() brings it back after another one was used.
 class HeadlessContext {
 public:
     /// Error: no EGL, no surfaceless platform, no desktop GL, or a size that the frame buffer can't have.
@@ -29,7 +29,7 @@ public:
     void makeCurrent();
     /// Binds the frame buffer and sets the viewport to all of it.
     void bindFramebuffer();
-    Image readColor() const;              ///< RGB
+    Image readColor() const;               ///< RGB
     std::vector<float> readDepth() const;  ///< width x height, rows from bottom to top, 1 is background
     std::string renderer() const;
     int width() const;

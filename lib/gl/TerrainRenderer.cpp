@@ -8,15 +8,13 @@ namespace terrain {
 
 namespace {
 
-const void* offset(std::size_t bytes)
-{
+const void* offset(std::size_t bytes) {
     return reinterpret_cast<const void*>(bytes);
 }
 
 }  // namespace
 
-void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& source)
-{
+void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& source) {
     // In pieces, so that no second copy of the whole grid is ever in memory.
     constexpr std::size_t kPiece = 1u << 16;
     const std::size_t count = std::size_t(grid.columns()) * std::size_t(grid.rows()), stride = format_.stride();
@@ -40,8 +38,7 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
     uploaded_ += count * (sizeof(glm::vec3) + stride);
 }
 
-void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& source, bool everything)
-{
+void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& source, bool everything) {
     if (list.positionsChanged || everything) {
         positions_.fill(GL_ARRAY_BUFFER, list.positions.data(), list.positions.size_bytes());
         uploaded_ += list.positions.size_bytes();
@@ -50,15 +47,15 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
     if (stride == 0 || (list.newVertices.empty() && !everything)) return;
     mirror_.resize(list.samples.size() * stride);
     if (everything)
-        for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex) source.write(list.samples[vertex], mirror_.data() + vertex * stride);
+        for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex)
+            source.write(list.samples[vertex], mirror_.data() + vertex * stride);
     else
         for (const std::uint32_t vertex : list.newVertices) source.write(list.samples[vertex], mirror_.data() + vertex * stride);
     attributes_.refill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size());
     uploaded_ += mirror_.size();
 }
 
-std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source)
-{
+std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source) {
     const ProfileScope scope("renderer: upload");
     uploaded_ = 0;
     const bool everything = !positions_.current().exists() || format_ != source.format() || version_ != source.version();
@@ -81,8 +78,7 @@ std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid
     return uploaded_;
 }
 
-void TerrainRenderer::draw() const
-{
+void TerrainRenderer::draw() const {
     if (indexCount_ == 0) return;
     const ProfileScope scope("renderer: draw");
     glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
@@ -115,8 +111,7 @@ void TerrainRenderer::draw() const
     glPopClientAttrib();
 }
 
-std::vector<GLuint> TerrainRenderer::release()
-{
+std::vector<GLuint> TerrainRenderer::release() {
     std::vector<GLuint> names;
     const auto take = [&names](GlBuffer& buffer) {
         if (const GLuint name = buffer.release()) names.push_back(name);

@@ -33,13 +33,14 @@ public:
     virtual void write(std::uint32_t sample, std::uint8_t* out) const = 0;
 };
 
-/// The buffers of one view in one GL context. The vertices are the samples themselves, so lights, fog, clip planes, texture units and the
-/// user's shader programs act on them as on any shape.
+/// The buffers of one view in one GL context. The vertices are the samples themselves, so lights, fog, clip planes, texture units
+/// and the user's shader programs act on them as on any shape.
 class TerrainRenderer {
 public:
     /// Brings the buffers up to date with the list. Returns the bytes sent to GL.
     std::size_t upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source);
-    /// One draw call. Client array state is restored; the current colour and normal are undefined after it where the format has them.
+    /// One draw call. Client array state is restored; the current colour and normal are undefined after it where the format has
+    /// them.
     void draw() const;
     std::uint32_t triangles() const { return indexCount_ / 3; }
     std::size_t bufferBytes() const { return positions_.bytes() + attributes_.bytes() + indices_.bytes(); }

@@ -64,18 +64,19 @@ enum class RawType { UInt8, UInt16LittleEndian, UInt16BigEndian };
 
 /// How a file is to be read. Fields that do not apply to a kind of file are ignored by it.
 struct HeightFileOptions {
-    int channel = -1;                        ///< -1: the only channel (a file with three or more channels is an error); else its index
-    glm::ivec2 rawSize{0, 0};                ///< columns and rows of a headerless file; (0, 0): a square, from the file's length
+    int channel = -1;          ///< -1: the only channel (a file with three or more channels is an error); else its index
+    glm::ivec2 rawSize{0, 0};  ///< columns and rows of a headerless file; (0, 0): a square, from the file's length
     RawType rawType = RawType::UInt8;
-    std::optional<glm::dvec2> spacing;       ///< overrides the file's own
-    std::optional<glm::dvec2> origin;        ///< overrides the file's own
-    double heightScale = 1.0;                ///< height = sample * heightScale + heightOffset
+    std::optional<glm::dvec2> spacing;  ///< overrides the file's own
+    std::optional<glm::dvec2> origin;   ///< overrides the file's own
+    double heightScale = 1.0;           ///< height = sample * heightScale + heightOffset
     double heightOffset = 0.0;
-    std::optional<double> noData;            ///< sample value (before scaling) that marks a hole, beside the file's own and NaN
+    std::optional<double> noData;  ///< sample value (before scaling) that marks a hole, beside the file's own and NaN
 };
 
 /// Opens any file this build can read: ".raw" by rawSize and rawType, GDAL's georeferenced rasters, images by OpenImageIO.
-/// Errors: missing or unreadable file, truncated data, channel out of range, three channels and none chosen, fewer than 2 x 2 samples.
+/// Errors: missing or unreadable file, truncated data, channel out of range, three channels and none chosen, fewer than 2 x 2
+/// samples.
 Result<std::shared_ptr<const HeightSource>> openHeightFile(const std::string& path, const HeightFileOptions& options);
 
 /// The source over a map in memory (takes the map). Error: fewer than 2 x 2 samples, or sizes that do not match the samples.

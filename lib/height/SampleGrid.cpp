@@ -8,8 +8,7 @@ namespace terrain {
 
 namespace {
 
-bool isFinite(const glm::vec3& p)
-{
+bool isFinite(const glm::vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
@@ -18,16 +17,15 @@ bool isFinite(const glm::vec3& p)
 SampleGrid::SampleGrid(const HeightMap& map) : SampleGrid(map, 0, 0, map.columns, map.rows) {}
 
 SampleGrid::SampleGrid(const HeightMap& map, int column, int row, int columns, int rows)
-    : columns_(columns), rows_(rows), heights_(map.heights.data() + std::size_t(row) * std::size_t(map.columns) + std::size_t(column)),
-      pitch_(std::size_t(map.columns))
-{
+    : columns_(columns), rows_(rows),
+      heights_(map.heights.data() + std::size_t(row) * std::size_t(map.columns) + std::size_t(column)),
+      pitch_(std::size_t(map.columns)) {
     localFromFrame_[0] = glm::dvec4(map.spacing.x, 0.0, 0.0, 0.0);
     localFromFrame_[1] = glm::dvec4(0.0, map.spacing.y, 0.0, 0.0);
     localFromFrame_[3] = glm::dvec4(map.origin + map.spacing * glm::dvec2(column, row), 0.0, 1.0);
 }
 
-Result<SampleGrid> SampleGrid::overPoints(const float* xyz, int columns, int rows)
-{
+Result<SampleGrid> SampleGrid::overPoints(const float* xyz, int columns, int rows) {
     if (columns < 2 || rows < 2)
         return Error{"terrain grid", "at least 2 x 2 samples", std::to_string(columns) + " x " + std::to_string(rows)};
     if (std::size_t(columns) > std::size_t(std::numeric_limits<int>::max()) / std::size_t(rows))
@@ -40,36 +38,31 @@ Result<SampleGrid> SampleGrid::overPoints(const float* xyz, int columns, int row
     return grid;
 }
 
-SampleGrid SampleGrid::movedTo(const float* xyz) const
-{
+SampleGrid SampleGrid::movedTo(const float* xyz) const {
     SampleGrid grid = *this;
     grid.points_ = xyz;
     if (grid.heights_) grid.heights_ = xyz + heightAxis_;
     return grid;
 }
 
-glm::vec3 SampleGrid::position(int column, int row) const
-{
+glm::vec3 SampleGrid::position(int column, int row) const {
     if (points_) {
         const float* p = points_ + index(column, row) * 3;
         return {p[0], p[1], p[2]};
     }
-    return {float(localFromFrame_[3][0] + localFromFrame_[0][0] * column), float(localFromFrame_[3][1] + localFromFrame_[1][1] * row),
-            height(column, row)};
+    return {float(localFromFrame_[3][0] + localFromFrame_[0][0] * column),
+            float(localFromFrame_[3][1] + localFromFrame_[1][1] * row), height(column, row)};
 }
 
-glm::vec3 SampleGrid::framePosition(int column, int row) const
-{
+glm::vec3 SampleGrid::framePosition(int column, int row) const {
     return isRegular() ? glm::vec3(float(column), float(row), height(column, row)) : position(column, row);
 }
 
-bool SampleGrid::isHole(int column, int row) const
-{
+bool SampleGrid::isHole(int column, int row) const {
     return isRegular() ? !std::isfinite(height(column, row)) : !isFinite(position(column, row));
 }
 
-void SampleGrid::findRegularity()
-{
+void SampleGrid::findRegularity() {
     // Heights along z first, then y (the habit of VRML), then x; columns run along one of the other axes, rows along the last.
     constexpr int candidates[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 0, 1}, {1, 2, 0}, {2, 1, 0}};
     const auto at = [this](int column, int row, int axis) { return points_[index(column, row) * 3 + std::size_t(axis)]; };

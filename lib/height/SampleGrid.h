@@ -16,8 +16,8 @@ namespace terrain {
 /// A grid of columns x rows samples in local coordinates, over a HeightMap or over points (x, y, z per sample).
 ///
 /// The *frame* of the grid is what the algorithms compute in. For a regular grid it is (column, row, height) with
-/// `localFromFrame()` taking it to local coordinates; heights may run along any axis of the local coordinates. For a curved grid the
-/// frame is the local coordinates themselves.
+/// `localFromFrame()` taking it to local coordinates; heights may run along any axis of the local coordinates. For a curved grid
+/// the frame is the local coordinates themselves.
 ///
 /// The view does not own its samples: it is made for one call and not kept.
 class SampleGrid {

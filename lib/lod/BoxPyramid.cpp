@@ -14,21 +14,18 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr BoxPyramid::Bounds kNothing{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
 
-void include(BoxPyramid::Bounds& bounds, const BoxPyramid::Bounds& other)
-{
+void include(BoxPyramid::Bounds& bounds, const BoxPyramid::Bounds& other) {
     bounds.low = glm::min(bounds.low, other.low);
     bounds.high = glm::max(bounds.high, other.high);
 }
 
-int blocksAcross(int samples, int blockCells)
-{
+int blocksAcross(int samples, int blockCells) {
     return std::max(1, (samples - 2) / blockCells + 1);
 }
 
 }  // namespace
 
-BoxPyramid::Bounds BoxPyramid::exactBounds(const SampleGrid& grid, int column0, int row0, int column1, int row1)
-{
+BoxPyramid::Bounds BoxPyramid::exactBounds(const SampleGrid& grid, int column0, int row0, int column1, int row1) {
     Bounds bounds = kNothing;
     column0 = std::max(column0, 0);
     row0 = std::max(row0, 0);
@@ -56,19 +53,20 @@ BoxPyramid::Bounds BoxPyramid::exactBounds(const SampleGrid& grid, int column0, 
     return bounds;
 }
 
-BoxPyramid::BoxPyramid(const SampleGrid& grid) : gridColumns_(grid.columns()), gridRows_(grid.rows()), regular_(grid.isRegular())
-{
+BoxPyramid::BoxPyramid(const SampleGrid& grid) : gridColumns_(grid.columns()), gridRows_(grid.rows()), regular_(grid.isRegular()) {
     const std::size_t floatsPerBlock = regular_ ? 2 : 6;
     Level base;
     base.columns = blocksAcross(gridColumns_, kBlockCells);
     base.rows = blocksAcross(gridRows_, kBlockCells);
     base.values.reserve(std::size_t(base.columns) * std::size_t(base.rows) * floatsPerBlock);
     const auto append = [this](Level& level, const Bounds& bounds) {
-        for (int axis = regular_ ? 2 : 0; axis < 3; ++axis) level.values.insert(level.values.end(), {bounds.low[axis], bounds.high[axis]});
+        for (int axis = regular_ ? 2 : 0; axis < 3; ++axis)
+            level.values.insert(level.values.end(), {bounds.low[axis], bounds.high[axis]});
     };
     for (int row = 0; row < base.rows; ++row)
         for (int column = 0; column < base.columns; ++column)
-            append(base, exactBounds(grid, column * kBlockCells, row * kBlockCells, (column + 1) * kBlockCells, (row + 1) * kBlockCells));
+            append(base,
+                   exactBounds(grid, column * kBlockCells, row * kBlockCells, (column + 1) * kBlockCells, (row + 1) * kBlockCells));
     levels_.push_back(std::move(base));
     while (levels_.back().columns > 1 || levels_.back().rows > 1) {
         const Level& fine = levels_.back();
@@ -88,8 +86,7 @@ BoxPyramid::BoxPyramid(const SampleGrid& grid) : gridColumns_(grid.columns()), g
     findAll(grid);
 }
 
-void BoxPyramid::findAll(const SampleGrid& grid)
-{
+void BoxPyramid::findAll(const SampleGrid& grid) {
     all_ = block(levelCount() - 1, 0, 0);
     if (!regular_ || all_.isEmpty()) return;
     // Border columns and rows without any valid sample do not count.
@@ -112,8 +109,7 @@ void BoxPyramid::findAll(const SampleGrid& grid)
     all_.high = {float(right), float(top), all_.high.z};
 }
 
-BoxPyramid::Bounds BoxPyramid::stored(const Level& level, int column, int row) const
-{
+BoxPyramid::Bounds BoxPyramid::stored(const Level& level, int column, int row) const {
     const std::size_t index = std::size_t(row) * std::size_t(level.columns) + std::size_t(column);
     Bounds bounds = kNothing;
     if (regular_) {
@@ -128,8 +124,7 @@ BoxPyramid::Bounds BoxPyramid::stored(const Level& level, int column, int row) c
     return bounds;
 }
 
-BoxPyramid::Bounds BoxPyramid::block(int level, int column, int row) const
-{
+BoxPyramid::Bounds BoxPyramid::block(int level, int column, int row) const {
     Bounds bounds = stored(levels_[std::size_t(level)], column, row);
     if (regular_) {
         const std::int64_t cells = std::int64_t(kBlockCells) << level;
@@ -141,8 +136,7 @@ BoxPyramid::Bounds BoxPyramid::block(int level, int column, int row) const
     return bounds;
 }
 
-BoxPyramid::Bounds BoxPyramid::bounds(int column0, int row0, int column1, int row1) const
-{
+BoxPyramid::Bounds BoxPyramid::bounds(int column0, int row0, int column1, int row1) const {
     column0 = std::max(column0, 0);
     row0 = std::max(row0, 0);
     column1 = std::min(column1, gridColumns_ - 1);
@@ -158,7 +152,8 @@ BoxPyramid::Bounds BoxPyramid::bounds(int column0, int row0, int column1, int ro
     const int lastColumn = std::min(std::max(column1 - 1, column0) / cells, blocks.columns - 1);
     const int lastRow = std::min(std::max(row1 - 1, row0) / cells, blocks.rows - 1);
     for (int row = std::min(row0 / cells, lastRow); row <= lastRow; ++row)
-        for (int column = std::min(column0 / cells, lastColumn); column <= lastColumn; ++column) include(bounds, stored(blocks, column, row));
+        for (int column = std::min(column0 / cells, lastColumn); column <= lastColumn; ++column)
+            include(bounds, stored(blocks, column, row));
     if (regular_) {
         bounds.low.x = float(column0);
         bounds.low.y = float(row0);
@@ -168,8 +163,7 @@ BoxPyramid::Bounds BoxPyramid::bounds(int column0, int row0, int column1, int ro
     return bounds;
 }
 
-std::size_t BoxPyramid::bytes() const
-{
+std::size_t BoxPyramid::bytes() const {
     std::size_t total = 0;
     for (const Level& level : levels_) total += level.values.capacity() * sizeof(float);
     return total;

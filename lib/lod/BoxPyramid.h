@@ -30,8 +30,8 @@ public:
     int levelCount() const { return int(levels_.size()); }
     int columns(int level) const { return levels_[std::size_t(level)].columns; }
     int rows(int level) const { return levels_[std::size_t(level)].rows; }
-    /// Bounds of block (column, row) of a level: kBlockCells * 2^level cells wide, its border samples included. For a regular grid x and y
-    /// are the block's own extent. Empty when all its samples are holes.
+    /// Bounds of block (column, row) of a level: kBlockCells * 2^level cells wide, its border samples included. For a regular grid
+    /// x and y are the block's own extent. Empty when all its samples are holes.
     Bounds block(int level, int column, int row) const;
     /// Bounds of the samples [column0, column1] x [row0, row1], cut to the grid; somewhat larger than exact, never smaller.
     Bounds bounds(int column0, int row0, int column1, int row1) const;
@@ -58,8 +58,7 @@ private:
 };
 
 /// The box of bounds that are not empty.
-inline Box boxOf(const BoxPyramid::Bounds& bounds)
-{
+inline Box boxOf(const BoxPyramid::Bounds& bounds) {
     return boxBetween(bounds.low, bounds.high);
 }
 

@@ -4,8 +4,7 @@
 
 namespace terrain {
 
-DrawList BruteForceMesh::select(const SampleGrid& grid, const View&, const LodSettings& settings)
-{
+DrawList BruteForceMesh::select(const SampleGrid& grid, const View&, const LodSettings& settings) {
     DrawList list;
     list.wholeGrid = true;
     list.indicesChanged = list.positionsChanged = !built_ || clockwise_ != settings.clockwise;

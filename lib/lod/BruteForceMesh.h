@@ -8,14 +8,14 @@
 namespace terrain {
 
 /// Corners of the two triangles of cell (column, row) of the full-resolution surface, as offsets from the cell's first sample:
-/// (0, 0), (1, 0), (0, 1) and (1, 0), (1, 1), (0, 1), counter-clockwise in the grid's plane. Picking, heights and primitives use the same
-/// diagonal, from (1, 0) to (0, 1), which is how SoQuadMesh and most of its users cut a cell.
+/// (0, 0), (1, 0), (0, 1) and (1, 0), (1, 1), (0, 1), counter-clockwise in the grid's plane. Picking, heights and primitives use
+/// the same diagonal, from (1, 0) to (0, 1), which is how SoQuadMesh and most of its users cut a cell.
 inline constexpr int kCellTriangles[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1, 1}, {0, 1}}};
 
 /// True when any corner of the cell is a hole: then nothing of it is drawn.
-inline bool isCellHole(const SampleGrid& grid, int column, int row)
-{
-    return grid.isHole(column, row) || grid.isHole(column + 1, row) || grid.isHole(column, row + 1) || grid.isHole(column + 1, row + 1);
+inline bool isCellHole(const SampleGrid& grid, int column, int row) {
+    return grid.isHole(column, row) || grid.isHole(column + 1, row) || grid.isHole(column, row + 1) ||
+           grid.isHole(column + 1, row + 1);
 }
 
 /// Indexes the whole grid once, in columns of cells narrow enough for a vertex cache to keep a row of them, and never again.

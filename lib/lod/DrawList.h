@@ -22,13 +22,13 @@ struct SelectionReport {
 
 /// Triangles over a pool of vertices. The spans belong to the algorithm and are valid until its next selection.
 struct DrawList {
-    std::span<const glm::vec3> positions;         ///< local coordinates by vertex; free places hold stale values
-    std::span<const std::uint32_t> samples;       ///< row * columns + column by vertex
-    std::span<const std::uint32_t> indices;       ///< three a triangle, counter-clockwise in the grid's (column, row) plane
-    std::span<const std::uint32_t> newVertices;   ///< vertices that stand for another sample than at the last selection
-    bool wholeGrid = false;                       ///< vertex i is sample i: positions, samples and newVertices are empty
-    bool positionsChanged = false;                ///< since the last selection
-    bool indicesChanged = false;                  ///< when not, indices may be empty: what was drawn last is drawn again
+    std::span<const glm::vec3> positions;        ///< local coordinates by vertex; free places hold stale values
+    std::span<const std::uint32_t> samples;      ///< row * columns + column by vertex
+    std::span<const std::uint32_t> indices;      ///< three a triangle, counter-clockwise in the grid's (column, row) plane
+    std::span<const std::uint32_t> newVertices;  ///< vertices that stand for another sample than at the last selection
+    bool wholeGrid = false;                      ///< vertex i is sample i: positions, samples and newVertices are empty
+    bool positionsChanged = false;               ///< since the last selection
+    bool indicesChanged = false;                 ///< when not, indices may be empty: what was drawn last is drawn again
     SelectionReport report;
 };
 

@@ -19,16 +19,15 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 class PackedHeights {
 public:
     using Value = float;
-    explicit PackedHeights(const SampleGrid& grid) : columns_(grid.columns()), heights_(std::size_t(grid.columns()) * std::size_t(grid.rows()))
-    {
+    explicit PackedHeights(const SampleGrid& grid)
+        : columns_(grid.columns()), heights_(std::size_t(grid.columns()) * std::size_t(grid.rows())) {
         for (int row = 0; row < grid.rows(); ++row)
             for (int column = 0; column < columns_; ++column) heights_[grid.index(column, row)] = grid.height(column, row);
     }
     float at(glm::ivec2 p) const { return heights_[std::size_t(p.y) * std::size_t(columns_) + std::size_t(p.x)]; }
     static float length(float v) { return std::fabs(v); }
     /// Largest distance of samples [first, last] of a row from start + i * step.
-    float rowDeviation(int row, int first, int last, float start, float step) const
-    {
+    float rowDeviation(int row, int first, int last, float start, float step) const {
         const float* sample = heights_.data() + std::size_t(row) * std::size_t(columns_) + first;
         float deviation = 0.0f;
 #pragma omp simd reduction(max : deviation)
@@ -47,8 +46,7 @@ public:
     explicit CurvedPoints(const SampleGrid& grid) : grid_(grid) {}
     glm::vec3 at(glm::ivec2 p) const { return grid_.position(p.x, p.y); }
     static float length(const glm::vec3& v) { return glm::length(v); }
-    float rowDeviation(int row, int first, int last, const glm::vec3& start, const glm::vec3& step) const
-    {
+    float rowDeviation(int row, int first, int last, const glm::vec3& start, const glm::vec3& step) const {
         float deviation = 0.0f;
         for (int i = 0; i <= last - first; ++i)
             deviation = std::max(deviation, glm::length(grid_.position(first + i, row) - (start + float(i) * step)));
@@ -61,8 +59,7 @@ private:
 
 /// The rows of samples of one triangle of a diamond: calls visit(row, first column, last column).
 template <class Visit>
-void forEachRow(const DiamondShape& d, int half, Visit visit)
-{
+void forEachRow(const DiamondShape& d, int half, Visit visit) {
     const glm::ivec2 apex = d.corner[half ? 3 : 1];
     const glm::ivec2 toCentre{d.centre.x > apex.x ? 1 : -1, d.centre.y > apex.y ? 1 : -1};
     if (d.isSquare) {
@@ -82,8 +79,7 @@ void forEachRow(const DiamondShape& d, int half, Visit visit)
 
 /// Largest deviation of the samples of one triangle from the plane through its corners.
 template <class Samples>
-float triangleDeviation(const Samples& samples, const DiamondShape& d, int half)
-{
+float triangleDeviation(const Samples& samples, const DiamondShape& d, int half) {
     using Value = typename Samples::Value;
     const glm::ivec2 apex = d.corner[half ? 3 : 1];
     const Value atApex = samples.at(apex), at0 = samples.at(d.corner[0]), at2 = samples.at(d.corner[2]);
@@ -97,7 +93,8 @@ float triangleDeviation(const Samples& samples, const DiamondShape& d, int half)
     } else {
         const Value middle = (at0 + at2) * 0.5f;
         const bool edgeAlongX = d.corner[0].y == d.corner[2].y;
-        const Value alongEdge = (at2 - at0) * ((edgeAlongX ? d.corner[2].x > d.corner[0].x : d.corner[2].y > d.corner[0].y) ? span : -span);
+        const Value alongEdge =
+            (at2 - at0) * ((edgeAlongX ? d.corner[2].x > d.corner[0].x : d.corner[2].y > d.corner[0].y) ? span : -span);
         const bool positive = edgeAlongX ? d.centre.y > apex.y : d.centre.x > apex.x;
         const Value across = (middle - atApex) * ((positive ? 2.0f : -2.0f) * span);
         gradientX = edgeAlongX ? alongEdge : across;
@@ -112,8 +109,7 @@ float triangleDeviation(const Samples& samples, const DiamondShape& d, int half)
 }
 
 /// Finest diamonds cover no sample but their corners and centre.
-float finestDeviation(const SampleGrid& grid, const DiamondShape& d)
-{
+float finestDeviation(const SampleGrid& grid, const DiamondShape& d) {
     const auto [a, b] = std::pair(d.corner[0], d.corner[2]);
     if (grid.isRegular())
         return std::fabs(grid.height(d.centre.x, d.centre.y) - (grid.height(a.x, a.y) + grid.height(b.x, b.y)) * 0.5f);
@@ -122,22 +118,19 @@ float finestDeviation(const SampleGrid& grid, const DiamondShape& d)
 
 enum State : std::uint8_t { Full, Empty, Mixed };
 
-bool overlapsGrid(const SampleGrid& grid, const DiamondShape& d, int half)
-{
+bool overlapsGrid(const SampleGrid& grid, const DiamondShape& d, int half) {
     const glm::ivec2 a = d.corner[half ? 3 : 1], b = d.corner[0], c = d.corner[2];
     return std::min({a.x, b.x, c.x}) < grid.columns() - 1 && std::min({a.y, b.y, c.y}) < grid.rows() - 1 &&
            std::max({a.x, b.x, c.x}) > 0 && std::max({a.y, b.y, c.y}) > 0;
 }
 
-bool liesInGrid(const SampleGrid& grid, const DiamondShape& d, int half)
-{
+bool liesInGrid(const SampleGrid& grid, const DiamondShape& d, int half) {
     const auto contains = [&grid](glm::ivec2 p) { return grid.contains(p.x, p.y); };
     return contains(d.corner[half ? 3 : 1]) && contains(d.corner[0]) && contains(d.corner[2]);
 }
 
 /// State of a triangle of which each half, next to the sides of the apex, is empty or not.
-State joined(const SampleGrid& grid, const DiamondShape& d, int half, const bool (&empty)[2])
-{
+State joined(const SampleGrid& grid, const DiamondShape& d, int half, const bool (&empty)[2]) {
     if (empty[0] != empty[1]) return Mixed;
     if (!empty[0]) return Full;
     // A hole that no corner shows would not be told from solid ground when it is drawn: keep splitting.
@@ -145,8 +138,7 @@ State joined(const SampleGrid& grid, const DiamondShape& d, int half, const bool
     return isHole(d.corner[half ? 3 : 1]) || isHole(d.corner[0]) || isHole(d.corner[2]) ? Empty : Mixed;
 }
 
-State finestState(const SampleGrid& grid, const DiamondShape& d, int half)
-{
+State finestState(const SampleGrid& grid, const DiamondShape& d, int half) {
     if (!liesInGrid(grid, d, half)) return overlapsGrid(grid, d, half) ? Mixed : Empty;
     const glm::ivec2 apex = d.corner[half ? 3 : 1];
     const auto cellIsHole = [&](glm::ivec2 end) {
@@ -156,8 +148,7 @@ State finestState(const SampleGrid& grid, const DiamondShape& d, int half)
 }
 
 /// Code of a finest diamond. `isSolid`: no holes, so that what lies in the grid is full.
-std::uint16_t finestCode(const SampleGrid& grid, const DiamondShape& d, bool isSolid)
-{
+std::uint16_t finestCode(const SampleGrid& grid, const DiamondShape& d, bool isSolid) {
     const auto stateOf = [&](int half) { return isSolid && liesInGrid(grid, d, half) ? Full : finestState(grid, d, half); };
     const State states[2] = {stateOf(0), stateOf(1)};
     if (states[0] == Mixed || states[1] == Mixed) return ErrorHierarchy::encode(kInfinity);
@@ -167,8 +158,7 @@ std::uint16_t finestCode(const SampleGrid& grid, const DiamondShape& d, bool isS
 /// Whether triangles lie in the grid's valid part. States of both triangles of a diamond are packed into one byte a sample.
 class Coverage {
 public:
-    explicit Coverage(const SampleGrid& grid) : grid_(grid)
-    {
+    explicit Coverage(const SampleGrid& grid) : grid_(grid) {
         for (int row = 0; row < grid.rows() && !hasHoles_; ++row)
             for (int column = 0; column < grid.columns() && !hasHoles_; ++column) hasHoles_ = grid.isHole(column, row);
         if (hasHoles_) states_.assign(std::size_t(grid.columns()) * std::size_t(grid.rows()), 0);
@@ -177,8 +167,7 @@ public:
     bool hasHoles() const { return hasHoles_; }
 
     /// Children must have been asked for before, but for finest ones. `half` is 0 for the triangle at q1, 1 for the one at q3.
-    State triangle(const DiamondShape& d, int half)
-    {
+    State triangle(const DiamondShape& d, int half) {
         State state = Full;
         if (!liesInGrid(grid_, d, half))
             state = overlapsGrid(grid_, d, half) ? Mixed : Empty;
@@ -192,8 +181,7 @@ public:
     }
 
 private:
-    State holes(const DiamondShape& d, int half) const
-    {
+    State holes(const DiamondShape& d, int half) const {
         bool empty[2];
         for (int side = 0; side < 2; ++side) {
             const DiamondShape child(d.child((half ? 2 : 0) + side));
@@ -218,8 +206,7 @@ private:
 
 /// Visits all diamonds whose centres lie in the grid, children before parents, without the finest.
 template <class Visit>
-void forEachDiamondUpwards(int columns, int rows, int side, Visit visit)
-{
+void forEachDiamondUpwards(int columns, int rows, int side, Visit visit) {
     for (int s = 1; s < side; s *= 2) {
         for (int y = 0; y < rows && s > 1; y += s)
             for (int x = (y & s) ? 0 : s; x < columns; x += 2 * s) visit(DiamondShape({x, y}));
@@ -230,8 +217,8 @@ void forEachDiamondUpwards(int columns, int rows, int side, Visit visit)
 
 /// Fills `codes`, of which placeOf(centre) is the diamond's.
 template <class Samples, class PlaceOf>
-void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage, int side, std::vector<std::uint16_t>& codes, PlaceOf placeOf)
-{
+void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage, int side, std::vector<std::uint16_t>& codes,
+             PlaceOf placeOf) {
     forEachDiamondUpwards(grid.columns(), grid.rows(), side, [&](const DiamondShape& d) {
         float deviation = 0.0f;
         for (int half = 0; half < 2; ++half) {
@@ -244,7 +231,8 @@ void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage,
             const glm::ivec2 child = d.child(side);
             if (!grid.contains(child.x, child.y)) continue;
             // A finest child's centre is among the samples of the parent, but rounded along another way.
-            code = std::max(code, d.size == 1 && d.isSquare ? finestCode(grid, DiamondShape(child), !coverage.hasHoles()) : codes[placeOf(child)]);
+            code = std::max(code, d.size == 1 && d.isSquare ? finestCode(grid, DiamondShape(child), !coverage.hasHoles())
+                                                            : codes[placeOf(child)]);
         }
         codes[placeOf(d.centre)] = code;
     });
@@ -252,16 +240,14 @@ void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage,
 
 }  // namespace
 
-std::uint16_t ErrorHierarchy::encode(float error)
-{
+std::uint16_t ErrorHierarchy::encode(float error) {
     // The sign bit is not needed: 8 bits of exponent and 8 of mantissa remain, and their order is that of the values.
     if (!(error > 0.0f)) return 0;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(error);
     return std::uint16_t((bits + 0x7fffu) >> 15);
 }
 
-ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()), rows_(grid.rows())
-{
+ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()), rows_(grid.rows()) {
     const unsigned cells = unsigned(std::max(columns_, rows_) - 1);
     exponent_ = int(std::bit_width(cells - 1));
     Coverage coverage(grid);
@@ -275,8 +261,7 @@ ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()
         measure(CurvedPoints(grid), grid, coverage, side(), codes_, placeOf);
 }
 
-float ErrorHierarchy::error(const SampleGrid& grid, const DiamondShape& d) const
-{
+float ErrorHierarchy::error(const SampleGrid& grid, const DiamondShape& d) const {
     if (d.centre.x >= columns_ || d.centre.y >= rows_) {
         // Beyond the grid: split as long as any of it may reach in.
         return d.centre.x - d.size < columns_ - 1 && d.centre.y - d.size < rows_ - 1 ? kInfinity : 0.0f;

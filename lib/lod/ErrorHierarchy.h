@@ -18,13 +18,13 @@ namespace terrain {
 /// exact, not the sum of deviations along the hierarchy that ROAM's wedgies are, and then made monotone: at least as large as every
 /// child's, so that refining by it never has to look ahead.
 ///
-/// The grid is embedded in the square of (2^n + 1)^2 vertices. A diamond with a triangle that lies partly outside of the grid or partly
-/// in a hole has an infinite error and so is always split. A cell is a hole when any of its four samples is.
+/// The grid is embedded in the square of (2^n + 1)^2 vertices. A diamond with a triangle that lies partly outside of the grid or
+/// partly in a hole has an infinite error and so is always split. A cell is a hole when any of its four samples is.
 ///
-/// The finest diamonds, half of all, cover nothing but their corners and centre: their error is computed when it is asked for. The others
-/// are stored in 2 bytes, so that the whole takes 1 byte a sample: the upper half of a float, rounded up, so that what is stored is
-/// never smaller than what was measured and at most 0.4 % larger. Building visits every sample about twice for each of the 2 n
-/// levels: O(N log N).
+/// The finest diamonds, half of all, cover nothing but their corners and centre: their error is computed when it is asked for. The
+/// others are stored in 2 bytes, so that the whole takes 1 byte a sample: the upper half of a float, rounded up, so that what is
+/// stored is never smaller than what was measured and at most 0.4 % larger. Building visits every sample about twice for each of
+/// the 2 n levels: O(N log N).
 class ErrorHierarchy {
 public:
     ErrorHierarchy() = default;
@@ -33,8 +33,8 @@ public:
     /// n: the square has 2^n cells a side; 0 for a grid of a single cell.
     int exponent() const { return exponent_; }
     int side() const { return 1 << exponent_; }
-    /// Error of a diamond, in units of the frame; infinite where it must be split, 0 where it need never be. `grid` is the one that the
-    /// hierarchy was built from.
+    /// Error of a diamond, in units of the frame; infinite where it must be split, 0 where it need never be. `grid` is the one that
+    /// the hierarchy was built from.
     float error(const SampleGrid& grid, const DiamondShape& diamond) const;
     /// True when every triangle is to be drawn: no holes, and the grid fills its square.
     bool isWhole() const { return whole_; }
@@ -46,7 +46,9 @@ public:
 
 private:
     /// Place of a diamond that is not finest: both coordinates are even, or both are odd.
-    std::size_t place(glm::ivec2 centre) const { return std::size_t(centre.y) * std::size_t((columns_ + 1) / 2) + std::size_t(centre.x / 2); }
+    std::size_t place(glm::ivec2 centre) const {
+        return std::size_t(centre.y) * std::size_t((columns_ + 1) / 2) + std::size_t(centre.x / 2);
+    }
 
     int columns_ = 0;
     int rows_ = 0;

@@ -13,24 +13,22 @@ namespace {
 
 class Caster {
 public:
-    Caster(const SampleGrid& grid, const BoxPyramid& boxes, const glm::dvec3& origin, const glm::dvec3& direction, double first, double last)
-        : grid_(grid), boxes_(boxes), origin_(origin), direction_(direction), first_(first), last_(last)
-    {
+    Caster(const SampleGrid& grid, const BoxPyramid& boxes, const glm::dvec3& origin, const glm::dvec3& direction, double first,
+           double last)
+        : grid_(grid), boxes_(boxes), origin_(origin), direction_(direction), first_(first), last_(last) {
         // A little slack keeps what lies exactly on the border of a flat box.
         const BoxPyramid::Bounds all = boxes.all();
         if (!all.isEmpty()) slack_ = 1e-6 * (1.0 + glm::length(glm::dvec3(all.high) - glm::dvec3(all.low)));
     }
 
-    std::vector<RayHit> cast()
-    {
+    std::vector<RayHit> cast() {
         descend(boxes_.levelCount() - 1, 0, 0);
         std::sort(hits_.begin(), hits_.end(), [](const RayHit& a, const RayHit& b) { return a.distance < b.distance; });
         return std::move(hits_);
     }
 
 private:
-    bool meets(const glm::dvec3& low, const glm::dvec3& high) const
-    {
+    bool meets(const glm::dvec3& low, const glm::dvec3& high) const {
         double enter = first_, leave = last_;
         for (int axis = 0; axis < 3; ++axis) {
             if (direction_[axis] == 0.0) {
@@ -45,8 +43,7 @@ private:
         return enter <= leave;
     }
 
-    void descend(int level, int column, int row)
-    {
+    void descend(int level, int column, int row) {
         const BoxPyramid::Bounds bounds = boxes_.block(level, column, row);
         if (bounds.isEmpty() || !meets(bounds.low, bounds.high)) return;
         if (level == 0) {
@@ -59,8 +56,7 @@ private:
             for (int x = 2 * column; x < std::min(2 * column + 2, boxes_.columns(level - 1)); ++x) descend(level - 1, x, y);
     }
 
-    void testCell(int column, int row)
-    {
+    void testCell(int column, int row) {
         const BoxPyramid::Bounds bounds = BoxPyramid::exactBounds(grid_, column, row, column + 1, row + 1);
         if (bounds.isEmpty() || !meets(bounds.low, bounds.high) || isCellHole(grid_, column, row)) return;
         for (int triangle = 0; triangle < 2; ++triangle) {
@@ -71,10 +67,9 @@ private:
         }
     }
 
-    /// Moeller and Trumbore, "Fast, Minimum Storage Ray-Triangle Intersection", 1997. Borders belong to both neighbours, so that no ray
-    /// slips through between them.
-    void testTriangle(const glm::dvec3 (&corner)[3], int column, int row, int triangle)
-    {
+    /// Moeller and Trumbore, "Fast, Minimum Storage Ray-Triangle Intersection", 1997. Borders belong to both neighbours, so that no
+    /// ray slips through between them.
+    void testTriangle(const glm::dvec3 (&corner)[3], int column, int row, int triangle) {
         constexpr double kBorder = 1e-9;
         const glm::dvec3 edge1 = corner[1] - corner[0], edge2 = corner[2] - corner[0];
         const glm::dvec3 p = glm::cross(direction_, edge2);
@@ -102,14 +97,13 @@ private:
 }  // namespace
 
 std::vector<RayHit> castRay(const SampleGrid& grid, const BoxPyramid& boxes, const glm::dvec3& origin, const glm::dvec3& direction,
-                            double first, double last)
-{
+                            double first, double last) {
     return Caster(grid, boxes, origin, direction, first, last).cast();
 }
 
-std::optional<SurfacePoint> surfaceAt(const SampleGrid& grid, const glm::dvec2& position)
-{
-    if (!grid.isRegular() || !(position.x >= 0.0 && position.x <= grid.columns() - 1 && position.y >= 0.0 && position.y <= grid.rows() - 1))
+std::optional<SurfacePoint> surfaceAt(const SampleGrid& grid, const glm::dvec2& position) {
+    if (!grid.isRegular() ||
+        !(position.x >= 0.0 && position.x <= grid.columns() - 1 && position.y >= 0.0 && position.y <= grid.rows() - 1))
         return std::nullopt;
     const int column = std::min(int(position.x), grid.columns() - 2), row = std::min(int(position.y), grid.rows() - 2);
     if (isCellHole(grid, column, row)) return std::nullopt;

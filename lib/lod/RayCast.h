@@ -14,7 +14,7 @@ namespace terrain {
 
 /// Where a line meets a triangle of a cell (see kCellTriangles).
 struct RayHit {
-    double distance;         ///< in lengths of the direction, from the origin
+    double distance;  ///< in lengths of the direction, from the origin
     int column;
     int row;
     int triangle;            ///< 0 or 1
@@ -28,8 +28,8 @@ struct RayHit {
 std::vector<RayHit> castRay(const SampleGrid& grid, const BoxPyramid& boxes, const glm::dvec3& origin, const glm::dvec3& direction,
                             double first, double last);
 
-/// The point of the full-resolution surface over (column, row), which need not be whole numbers. Regular grids only; none outside of the
-/// grid and in a hole.
+/// The point of the full-resolution surface over (column, row), which need not be whole numbers. Regular grids only; none outside
+/// of the grid and in a hole.
 struct SurfacePoint {
     float height;
     int column;

@@ -16,14 +16,14 @@ namespace {
 
 /// Less slack than doubling leaves: these arrays are most of what a mesh holds.
 template <class T>
-void growTo(std::vector<T>& items, std::size_t size)
-{
+void growTo(std::vector<T>& items, std::size_t size) {
     if (size > items.capacity()) items.reserve(size + size / 8 + 256);
     items.resize(size);
 }
 
-// The innermost loops of a selection. They are compiled for wider vectors too, and the processor's kind decides when the program starts;
-// without contraction the results are the same. Sanitizers can't live with functions that are chosen before they are set up.
+// The innermost loops of a selection. They are compiled for wider vectors too, and the processor's kind decides when the program
+// starts; without contraction the results are the same. Sanitizers can't live with functions that are chosen before they are set
+// up.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SOTERRAIN_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
@@ -45,8 +45,7 @@ struct HeightSteps {
 
 SOTERRAIN_VECTOR_CLONES
 void loadRegular(const std::uint16_t* column, const std::uint16_t* row, const std::uint16_t* reach, const std::uint16_t* lowest,
-                 const std::uint16_t* highest, const HeightSteps& height, Lanes& lanes)
-{
+                 const std::uint16_t* highest, const HeightSteps& height, Lanes& lanes) {
     const float base = height.base, half = 0.5f * height.step;
 #pragma omp simd
     for (std::size_t i = 0; i < kLanes; ++i) {
@@ -58,8 +57,7 @@ void loadRegular(const std::uint16_t* column, const std::uint16_t* row, const st
     }
 }
 
-void loadBox(const Box& box, std::size_t i, Lanes& lanes)
-{
+void loadBox(const Box& box, std::size_t i, Lanes& lanes) {
     lanes.x[i] = box.centre.x;
     lanes.y[i] = box.centre.y;
     lanes.z[i] = box.centre.z;
@@ -70,8 +68,7 @@ void loadBox(const Box& box, std::size_t i, Lanes& lanes)
 
 /// ScreenSpace::screenError() and isOutside() for all lanes, and for how many frames what they say lasts.
 SOTERRAIN_VECTOR_CLONES
-void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRequest& request, float* priority, float* frames)
-{
+void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRequest& request, float* priority, float* frames) {
     float error[kLanes];
 #pragma omp simd
     for (std::size_t i = 0; i < kLanes; ++i) error[i] = std::bit_cast<float>(std::uint32_t(code[i]) << 15);
@@ -84,7 +81,8 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
         const float reachX = std::fabs(px), reachY = std::fabs(py), reachZ = std::fabs(pz);
 #pragma omp simd
         for (std::size_t i = 0; i < kLanes; ++i) {
-            const float largest = px * b.x[i] + py * b.y[i] + pz * b.z[i] + pw + reachX * b.halfX[i] + reachY * b.halfY[i] + reachZ * b.halfZ[i];
+            const float largest =
+                px * b.x[i] + py * b.y[i] + pz * b.z[i] + pw + reachX * b.halfX[i] + reachY * b.halfY[i] + reachZ * b.halfZ[i];
             outside[i] = outside[i] > -largest ? outside[i] : -largest;
         }
     }
@@ -104,17 +102,18 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
     const float needed = request.assumedFactor / request.threshold, resting = 0.7f * request.assumedFactor / request.full;
 #pragma omp simd
     for (std::size_t i = 0; i < kLanes; ++i) {
-        const float nearest = w.x * b.x[i] + w.y * b.y[i] + w.z * b.z[i] + w.w - reachWx * b.halfX[i] - reachWy * b.halfY[i] -
-                              reachWz * b.halfZ[i];
+        const float nearest =
+            w.x * b.x[i] + w.y * b.y[i] + w.z * b.z[i] + w.w - reachWx * b.halfX[i] - reachWy * b.halfY[i] - reachWz * b.halfZ[i];
         const float inView = priority[i] > kLeast ? priority[i] : kLeast;
         priority[i] = outside[i] > 0.0f || error[i] == 0.0f ? 0.0f : inView;
-        const float distance = (std::fabs(b.x[i] - eye.x) + b.halfX[i]) * length.x + (std::fabs(b.y[i] - eye.y) + b.halfY[i]) * length.y +
+        const float distance = (std::fabs(b.x[i] - eye.x) + b.halfX[i]) * length.x +
+                               (std::fabs(b.y[i] - eye.y) + b.halfY[i]) * length.y +
                                (std::fabs(b.z[i] - eye.z) + b.halfZ[i]) * length.z + drift;
         // Rates can be 0: then only what has no margin does not last.
         const float slack = std::fabs(outside[i]);
         const float labelFrames = slack > 0.0f ? slack / (planes.shift + planes.turn * distance) : 0.0f;
-        // Not yet to be split: until w falls to `needed` error. Split and standing still: until it rises to `resting` error. In between,
-        // where only the finer bound tells, nothing lasts.
+        // Not yet to be split: until w falls to `needed` error. Split and standing still: until it rises to `resting` error. In
+        // between, where only the finer bound tells, nothing lasts.
         const float toSplit = nearest - error[i] * needed, toMove = error[i] * resting - nearest;
         const float margin = toSplit > 0.0f ? toSplit : toMove > 0.0f && priority[i] > full ? toMove : 0.0f;
         const float lasting = margin > 0.0f ? margin / (depth.shift + depth.turn * distance) : 0.0f;
@@ -125,8 +124,7 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
 
 }  // namespace
 
-std::size_t RoamBounds::append()
-{
+std::size_t RoamBounds::append() {
     if (size_ == error_.size()) {
         const std::size_t size = size_ + kBlock;
         growTo(column_, size);
@@ -144,15 +142,13 @@ std::size_t RoamBounds::append()
     return size_++;
 }
 
-RoamBounds::RoamBounds(bool regular, const BoxPyramid::Bounds& all) : regular_(regular)
-{
+RoamBounds::RoamBounds(bool regular, const BoxPyramid::Bounds& all) : regular_(regular) {
     if (all.isEmpty()) return;
     heightBase_ = all.low.z;
     heightStep_ = (all.high.z - all.low.z) / 65535.0f;
 }
 
-void RoamBounds::set(std::size_t number, glm::ivec2 centre, int size, const BoxPyramid::Bounds& bounds, float error)
-{
+void RoamBounds::set(std::size_t number, glm::ivec2 centre, int size, const BoxPyramid::Bounds& bounds, float error) {
     column_[number] = std::uint16_t(centre.x);
     row_[number] = std::uint16_t(centre.y);
     // What covers no valid sample is never seen.
@@ -168,23 +164,21 @@ void RoamBounds::set(std::size_t number, glm::ivec2 centre, int size, const BoxP
     highest_[number] = std::uint16_t(std::clamp(std::ceil((bounds.high.z - heightBase_) / heightStep_), 0.0f, 65535.0f));
 }
 
-void RoamBounds::clear(std::size_t number)
-{
+void RoamBounds::clear(std::size_t number) {
     error_[number] = 0;
     priority_[number] = 0.0f;
 }
 
-Box RoamBounds::box(std::size_t number) const
-{
+Box RoamBounds::box(std::size_t number) const {
     if (!regular_) return boxes_[number];
     const float reach = float(int(reach_[number]));
     const float half = 0.5f * heightStep_;
-    return {{float(int(column_[number])), float(int(row_[number])), heightBase_ + float(int(lowest_[number]) + int(highest_[number])) * half},
+    return {{float(int(column_[number])), float(int(row_[number])),
+             heightBase_ + float(int(lowest_[number]) + int(highest_[number])) * half},
             {reach, reach, float(int(highest_[number]) - int(lowest_[number])) * half}};
 }
 
-void RoamBounds::evaluate(std::size_t number, const EvaluationRequest& request)
-{
+void RoamBounds::evaluate(std::size_t number, const EvaluationRequest& request) {
     const Box b = box(number);
     const float error = ErrorHierarchy::decode(error_[number]);
     if (error == 0.0f)
@@ -195,36 +189,36 @@ void RoamBounds::evaluate(std::size_t number, const EvaluationRequest& request)
         priority_[number] = request.cull ? 0.0f : turnedError(error, b, request);
 }
 
-float RoamBounds::turnedError(float error, const Box& box, const EvaluationRequest& request)
-{
+float RoamBounds::turnedError(float error, const Box& box, const EvaluationRequest& request) {
     const glm::vec3 gap = glm::max(glm::abs(box.centre - request.motion->eye()) - box.half, glm::vec3(0.0f));
     const float distance = glm::length(gap * request.motion->unitLength());
     // Half as fine as what is in view, which so comes first where work is limited.
     return 0.5f * error * request.space->largestFactor() / (request.depthAtEye + request.depthPerLength * distance);
 }
 
-int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& request)
-{
+int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& request) {
     const std::size_t first = block * kBlock;
     Lanes lanes;
     if (regular_)
-        loadRegular(&column_[first], &row_[first], &reach_[first], &lowest_[first], &highest_[first], {heightBase_, heightStep_}, lanes);
+        loadRegular(&column_[first], &row_[first], &reach_[first], &lowest_[first], &highest_[first], {heightBase_, heightStep_},
+                    lanes);
     else
         for (std::size_t i = 0; i < kBlock; ++i) loadBox(boxes_[first + i], i, lanes);
     float frames[kBlock];
     evaluateLanes(lanes, &error_[first], request, &priority_[first], frames);
     if (!request.cull)
         for (std::size_t number = first; number < first + kBlock; ++number)
-            if (priority_[number] == 0.0f && error_[number] != 0) priority_[number] = turnedError(ErrorHierarchy::decode(error_[number]), box(number), request);
+            if (priority_[number] == 0.0f && error_[number] != 0)
+                priority_[number] = turnedError(ErrorHierarchy::decode(error_[number]), box(number), request);
     float soonest = float(ViewMotion::kLongest);
     for (const float lasting : frames) soonest = std::min(soonest, lasting);
     return std::max(1, int(soonest));
 }
 
-std::size_t RoamBounds::bytes() const
-{
+std::size_t RoamBounds::bytes() const {
     const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
-    return held(column_) + held(row_) + held(reach_) + held(lowest_) + held(highest_) + held(boxes_) + held(error_) + held(priority_);
+    return held(column_) + held(row_) + held(reach_) + held(lowest_) + held(highest_) + held(boxes_) + held(error_) +
+           held(priority_);
 }
 
 }  // namespace terrain

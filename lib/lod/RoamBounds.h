@@ -20,11 +20,11 @@ struct EvaluationRequest {
     const ScreenSpace* space = nullptr;
     const ViewMotion* motion = nullptr;
     bool cull = true;
-    float threshold = 0.0f;      ///< pixels above which a diamond is to be split
-    float full = 0.0f;           ///< pixels above which it is split and stands still
+    float threshold = 0.0f;       ///< pixels above which a diamond is to be split
+    float full = 0.0f;            ///< pixels above which it is split and stands still
     float depthAtEye = 0.0f;      ///< 0 but for orthographic cameras
     float depthPerLength = 0.0f;  ///< 0 for those
-    float assumedFactor = 0.0f;  ///< ScreenSpace::largestFactor() will not exceed it while results are kept
+    float assumedFactor = 0.0f;   ///< ScreenSpace::largestFactor() will not exceed it while results are kept
 };
 
 /// Structure of arrays, by the number of a diamond: 16 bytes each for a regular grid, whose heights and errors
@@ -50,8 +50,8 @@ public:
     /// Bound on the screen error in pixels when last evaluated; 0 outside of the view.
     float priority(std::size_t number) const { return priority_[number]; }
 
-    /// Priorities of one block. Returns the frames for which they stay on the same side of the request's limits: at least 1, at most
-    /// ViewMotion::kLongest.
+    /// Priorities of one block. Returns the frames for which they stay on the same side of the request's limits: at least 1, at
+    /// most ViewMotion::kLongest.
     int evaluateBlock(std::size_t block, const EvaluationRequest& request);
     /// Priority of one diamond.
     void evaluate(std::size_t number, const EvaluationRequest& request);

@@ -7,15 +7,14 @@
 
 namespace terrain {
 
-/// One walk over the triangles. It writes through a pointer that it hands from call to call, so that it stays in a register; what need not be
-/// asked for each triangle is a template parameter.
+/// One walk over the triangles. It writes through a pointer that it hands from call to call, so that it stays in a register; what
+/// need not be asked for each triangle is a template parameter.
 template <bool Whole, bool Clockwise>
 class RoamMesh::Emitter {
 public:
     explicit Emitter(const RoamMesh& mesh) : mesh_(mesh), links_(mesh.links_.data()) {}
 
-    std::uint32_t* put(std::uint32_t* out, std::uint32_t a, std::uint32_t b, std::uint32_t c) const
-    {
+    std::uint32_t* put(std::uint32_t* out, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
         // Only a triangle outside of the grid or in a hole has a corner that does not exist.
         if (!Whole && (a == kNoVertex || b == kNoVertex || c == kNoVertex)) return out;
         out[0] = a;
@@ -24,8 +23,7 @@ public:
         return out + 3;
     }
 
-    std::uint32_t* link(std::uint32_t* out, std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const
-    {
+    std::uint32_t* link(std::uint32_t* out, std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const {
         if (link != kNone) {
             if (link & kSplitLink) return split(out, links_[(link & ~kSplitLink) / 2], link % 2, first, apex, last);
             if (mesh_.bounds_.priority(link / 2) == 0.0f) return out;
@@ -34,8 +32,8 @@ public:
     }
 
 private:
-    std::uint32_t* split(std::uint32_t* out, const Links& d, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const
-    {
+    std::uint32_t* split(std::uint32_t* out, const Links& d, unsigned half, std::uint32_t first, std::uint32_t apex,
+                         std::uint32_t last) const {
         if (d.finest) return halfCells(out, d, half, first, apex, last);
         const std::uint32_t left = d.child[2 * half], right = d.child[2 * half + 1], middle = d.vertex;
         if (right != kNone && (right & kSplitLink)) __builtin_prefetch(&links_[(right & ~kSplitLink) / 2]);
@@ -44,8 +42,8 @@ private:
         return link(out, right, last, middle, apex);
     }
 
-    std::uint32_t* halfCells(std::uint32_t* out, const Links& d, unsigned half, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const
-    {
+    std::uint32_t* halfCells(std::uint32_t* out, const Links& d, unsigned half, std::uint32_t first, std::uint32_t apex,
+                             std::uint32_t last) const {
         if (Whole || d.solidCells == 0xf) return put(put(out, apex, d.vertex, first), last, d.vertex, apex);
         // Without a centre there is no solid cell around it.
         if (d.vertex == kNoVertex) return out;
@@ -66,8 +64,7 @@ private:
 };
 
 template <bool Whole, bool Clockwise>
-std::uint32_t* RoamMesh::emitAll(std::uint32_t* out) const
-{
+std::uint32_t* RoamMesh::emitAll(std::uint32_t* out) const {
     const Emitter<Whole, Clockwise> emitter(*this);
     const auto [c0, c1, c2, c3] = corners_;
     if (root_ != kNone) {
@@ -82,8 +79,7 @@ std::uint32_t* RoamMesh::emitAll(std::uint32_t* out) const
     return emitter.put(emitter.put(out, c0, c1, c3), c1, c2, c3);
 }
 
-void RoamMesh::emit()
-{
+void RoamMesh::emit() {
     const ProfileScope scope("roam: emit triangles");
     const std::size_t most = std::size_t(meshTriangles_) * 3;
     if (most > indices_.capacity()) indices_.reserve(most + most / 8);
@@ -95,8 +91,7 @@ void RoamMesh::emit()
     report_.triangles = std::uint32_t(indices_.size() / 3);
 }
 
-void RoamMesh::boundError()
-{
+void RoamMesh::boundError() {
     float worst = leafError_;
     for (const Candidate& left : splitQueue_)
         if (isCurrent(left) && !isSplit(left.diamond)) worst = std::max(worst, left.priority);
@@ -104,8 +99,7 @@ void RoamMesh::boundError()
     report_.errorPixels = worst > 0.0f && mayDefer_ ? std::max(worst, request_.threshold) : worst;
 }
 
-void RoamMesh::place(std::uint32_t number)
-{
+void RoamMesh::place(std::uint32_t number) {
     const Vertex& v = vertices_[number];
     glm::vec3 position = v.target;
     if (v.morph < 1.0f && v.edge[0] != kNoVertex && v.edge[1] != kNoVertex) {
@@ -117,8 +111,7 @@ void RoamMesh::place(std::uint32_t number)
     positionsChanged_ = true;
 }
 
-void RoamMesh::collectMoving(float full)
-{
+void RoamMesh::collectMoving(float full) {
     moving_.clear();
     if (!settings_.geomorph) return;
     std::array<std::uint32_t, 34> start{};
@@ -136,11 +129,11 @@ void RoamMesh::collectMoving(float full)
     for (const Candidate& c : splitQueue_) moving_[start[levelOf(c.diamond)]++] = c.diamond;
 }
 
-void RoamMesh::morph()
-{
+void RoamMesh::morph() {
     const ProfileScope scope("roam: morph");
     // Where a limit stopped refinement, the error that was reached takes the place of the error that was asked for.
-    const float full = std::isfinite(report_.errorPixels) ? std::max(settings_.pixelError, report_.errorPixels) : settings_.pixelError;
+    const float full =
+        std::isfinite(report_.errorPixels) ? std::max(settings_.pixelError, report_.errorPixels) : settings_.pixelError;
     const float start = kMorphStart * full;
     collectMoving(full);
     for (const std::uint32_t vertex : moved_) vertices_[vertex].morph = 1.0f;

@@ -9,8 +9,7 @@ namespace {
 
 /// One more element, with less slack than doubling leaves: these arrays are most of what a mesh holds.
 template <class T>
-void grow(std::vector<T>& items)
-{
+void grow(std::vector<T>& items) {
     if (items.size() == items.capacity()) items.reserve(items.size() + items.size() / 8 + 256);
     items.emplace_back();
 }
@@ -18,9 +17,8 @@ void grow(std::vector<T>& items)
 }  // namespace
 
 RoamMesh::RoamMesh(const TerrainModel& model, const SampleGrid& grid)
-    : model_(model), side_(model_.errors->side()), whole_(model_.errors->isWhole()),
-      regular_(grid.isRegular()), columns_(grid.columns()), bounds_(grid.isRegular(), model_.boxes->all())
-{
+    : model_(model), side_(model_.errors->side()), whole_(model_.errors->isWhole()), regular_(grid.isRegular()),
+      columns_(grid.columns()), bounds_(grid.isRegular(), model_.boxes->all()) {
     const int n = model_.errors->exponent();
     const glm::ivec2 corner[4] = {{0, 0}, {side_, 0}, {side_, side_}, {0, side_}};
     for (std::size_t i = 0; i < 4; ++i) corners_[i] = addVertex(grid, corner[i]);
@@ -30,8 +28,7 @@ RoamMesh::RoamMesh(const TerrainModel& model, const SampleGrid& grid)
     if (model_.errors->error(grid, shape) > 0.0f) root_ = create(grid, shape);
 }
 
-std::uint32_t RoamMesh::addVertex(const SampleGrid& grid, glm::ivec2 at)
-{
+std::uint32_t RoamMesh::addVertex(const SampleGrid& grid, glm::ivec2 at) {
     if (!grid.contains(at.x, at.y) || grid.isHole(at.x, at.y)) return kNoVertex;
     std::uint32_t vertex;
     if (freeVertex_ == kNone) {
@@ -50,21 +47,18 @@ std::uint32_t RoamMesh::addVertex(const SampleGrid& grid, glm::ivec2 at)
     return vertex;
 }
 
-std::uint32_t RoamMesh::find(glm::ivec2 centre) const
-{
+std::uint32_t RoamMesh::find(glm::ivec2 centre) const {
     return table_.find(centre, [this](std::uint32_t number) { return bounds_.centre(number); });
 }
 
-std::uint32_t RoamMesh::vertexAt(glm::ivec2 at) const
-{
+std::uint32_t RoamMesh::vertexAt(glm::ivec2 at) const {
     const bool right = at.x == side_, top = at.y == side_;
     if ((right || at.x == 0) && (top || at.y == 0)) return corners_[top ? (right ? 2 : 3) : (right ? 1 : 0)];
     const std::uint32_t number = find(at);
     return number == kNone || !isSplit(number) ? kNoVertex : links(number).vertex;
 }
 
-void RoamMesh::bound(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number)
-{
+void RoamMesh::bound(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number) {
     const glm::ivec2 low = shape.centre - shape.size, high = shape.centre + shape.size;
     // In space the pyramid's blocks would be far too wide for the smallest diamonds.
     const BoxPyramid::Bounds bounds = !regular_ && shape.size <= 2 ? BoxPyramid::exactBounds(grid, low.x, low.y, high.x, high.y)
@@ -72,8 +66,7 @@ void RoamMesh::bound(const SampleGrid& grid, const DiamondShape& shape, std::uin
     bounds_.set(number, shape.centre, shape.size, bounds, model_.errors->error(grid, shape));
 }
 
-std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape)
-{
+std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape) {
     std::uint32_t number;
     if (freeCount_ == 0) {
         number = std::uint32_t(bounds_.append());
@@ -99,8 +92,7 @@ std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape
     return number;
 }
 
-void RoamMesh::destroy(std::uint32_t number)
-{
+void RoamMesh::destroy(std::uint32_t number) {
     table_.erase(number, [this](std::uint32_t other) { return bounds_.centre(other); });
     bounds_.clear(number);
     freeDiamonds_[number / 64] |= std::uint64_t(1) << (number % 64);
@@ -108,8 +100,7 @@ void RoamMesh::destroy(std::uint32_t number)
     ++freeCount_;
 }
 
-std::uint8_t RoamMesh::findSolidCells(const SampleGrid& grid, glm::ivec2 centre) const
-{
+std::uint8_t RoamMesh::findSolidCells(const SampleGrid& grid, glm::ivec2 centre) const {
     std::uint8_t solid = 0;
     const auto valid = [&grid](int column, int row) { return grid.contains(column, row) && !grid.isHole(column, row); };
     for (const int dy : {-1, 1})
@@ -120,16 +111,14 @@ std::uint8_t RoamMesh::findSolidCells(const SampleGrid& grid, glm::ivec2 centre)
     return solid;
 }
 
-void RoamMesh::relink(std::uint32_t number, std::uint32_t from, std::uint32_t to)
-{
+void RoamMesh::relink(std::uint32_t number, std::uint32_t from, std::uint32_t to) {
     for (unsigned half = 0; half < 2; ++half)
         if (const std::uint32_t parent = diamonds_[number].parent[half]; parent != kNone)
             for (std::uint32_t& link : links(parent).child)
                 if (link == from + half) link = to + half;
 }
 
-bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
-{
+bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number) {
     const DiamondShape shape(bounds_.centre(number));
     // Both triangles must be there: a parent that is not split yet is split first, and its parents before it (ROAM's forced split).
     for (std::size_t half = 0; half < 2 && number != root_; ++half) {
@@ -137,7 +126,8 @@ bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
         if (diamonds_[number].parent[half] != kNone || !inSquare(apex)) continue;
         std::uint32_t parent = find(apex);
         if (parent == kNone) {
-            // Its own parents may be split already and have passed it over: beyond the grid an error can be 0 where a child's is not.
+            // Its own parents may be split already and have passed it over: beyond the grid an error can be 0 where a child's is
+            // not.
             const DiamondShape parentShape(apex);
             parent = create(grid, parentShape);
             linkToParents(parent, parentShape);
@@ -172,15 +162,13 @@ bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number)
     return true;
 }
 
-void RoamMesh::link(std::uint32_t parent, unsigned side, std::uint32_t child, const DiamondShape& childShape)
-{
+void RoamMesh::link(std::uint32_t parent, unsigned side, std::uint32_t child, const DiamondShape& childShape) {
     const unsigned half = childShape.corner[1] == bounds_.centre(parent) ? 0 : 1;
     links(parent).child[side] = leafLink(child, half);
     diamonds_[child].parent[half] = parent;
 }
 
-void RoamMesh::linkToParents(std::uint32_t number, const DiamondShape& shape)
-{
+void RoamMesh::linkToParents(std::uint32_t number, const DiamondShape& shape) {
     for (const std::size_t apex : {1u, 3u}) {
         const std::uint32_t parent = inSquare(shape.corner[apex]) ? find(shape.corner[apex]) : kNone;
         if (parent == kNone || !isSplit(parent)) continue;
@@ -190,8 +178,7 @@ void RoamMesh::linkToParents(std::uint32_t number, const DiamondShape& shape)
     }
 }
 
-void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape)
-{
+void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape) {
     for (int side = 0; side < 4; ++side) {
         const glm::ivec2 centre = shape.child(side);
         // At the rim of the square one half of the diamond, and its two sides, do not exist.
@@ -206,8 +193,7 @@ void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const
     }
 }
 
-void RoamMesh::merge(std::uint32_t number)
-{
+void RoamMesh::merge(std::uint32_t number) {
     for (const std::uint32_t link : links(number).child) {
         if (link == kNone) continue;
         Diamond& child = diamonds_[link / 2];
@@ -230,12 +216,11 @@ void RoamMesh::merge(std::uint32_t number)
     ++operations_;
 }
 
-std::size_t RoamMesh::bytes() const
-{
+std::size_t RoamMesh::bytes() const {
     const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
-    return bounds_.bytes() + held(diamonds_) + held(due_) + held(freeDiamonds_) + held(links_) + table_.bytes() +
-           held(positions_) + held(vertices_) + held(samples_) + held(newVertices_) + held(indices_) +
-           held(splitQueue_) + held(mergeQueue_) + held(moving_) + held(moved_);
+    return bounds_.bytes() + held(diamonds_) + held(due_) + held(freeDiamonds_) + held(links_) + table_.bytes() + held(positions_) +
+           held(vertices_) + held(samples_) + held(newVertices_) + held(indices_) + held(splitQueue_) + held(mergeQueue_) +
+           held(moving_) + held(moved_);
 }
 
 }  // namespace terrain

@@ -18,17 +18,17 @@
 namespace terrain {
 
 /// ROAM (Duchaineau, Wolinsky, Sigeti, Miller, Aldrich, Mineev-Weinstein: "ROAMing Terrain: Real-time Optimally Adapting Meshes",
-/// Visualization 1997) over diamonds: a split queue of the diamonds that can be split, a merge queue of the split ones whose children
-/// are not (sect. 4), forced splits for a mesh without cracks (fig. 3), frustum labels and priorities that are kept for as long as the
-/// camera's motion can't have changed them (sect. 6.2 and 6.3; ViewMotion.h), a triangle budget met by splitting at the top of one queue
-/// and merging at the bottom of the other (sect. 5). Priorities are screen errors (View.h) of the exact hierarchy (ErrorHierarchy.h)
-/// instead of nested wedgies.
+/// Visualization 1997) over diamonds: a split queue of the diamonds that can be split, a merge queue of the split ones whose
+/// children are not (sect. 4), forced splits for a mesh without cracks (fig. 3), frustum labels and priorities that are kept for as
+/// long as the camera's motion can't have changed them (sect. 6.2 and 6.3; ViewMotion.h), a triangle budget met by splitting at the
+/// top of one queue and merging at the bottom of the other (sect. 5). Priorities are screen errors (View.h) of the exact hierarchy
+/// (ErrorHierarchy.h) instead of nested wedgies.
 ///
-/// Geomorph. The vertex m of a split diamond with longest edge a-b stands at (a + b) / 2 + t (M - (A + B) / 2): capitals are the true
-/// positions, small letters the drawn ones, and t goes from 0 to 1 while the diamond's screen error goes from `kMorphStart` pixelError
-/// to pixelError. Where t never grows from parent to child, that surface is an average of the meshes { diamonds with t >= x are
-/// split } over x in [0, 1], each of which keeps the error within pixelError, so the average does as well. morph() raises the t of a
-/// parent to that of its children where the order would not hold by itself.
+/// Geomorph. The vertex m of a split diamond with longest edge a-b stands at (a + b) / 2 + t (M - (A + B) / 2): capitals are the
+/// true positions, small letters the drawn ones, and t goes from 0 to 1 while the diamond's screen error goes from `kMorphStart`
+/// pixelError to pixelError. Where t never grows from parent to child, that surface is an average of the meshes { diamonds with t
+/// >= x are split } over x in [0, 1], each of which keeps the error within pixelError, so the average does as well. morph() raises
+/// the t of a parent to that of its children where the order would not hold by itself.
 ///
 /// The mesh keeps no pointer to samples: select() is given them.
 class RoamMesh : public LodAlgorithm {
@@ -39,8 +39,8 @@ public:
     RoamMesh(const RoamMesh&) = delete;
     RoamMesh& operator=(const RoamMesh&) = delete;
 
-    /// Adapts the mesh to a view. The first call refines until the view's error is met; later ones stop at the operation limit and say so.
-    /// The same calls in the same order give the same results.
+    /// Adapts the mesh to a view. The first call refines until the view's error is met; later ones stop at the operation limit and
+    /// say so. The same calls in the same order give the same results.
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
 
     /// Triangles of the whole mesh, those outside of the view included.
@@ -50,8 +50,8 @@ public:
 private:
     static constexpr std::uint32_t kNone = DiamondTable::kNone;
 
-    /// A diamond that is split or could be: at least one of its parents is split. There are two for each triangle, and a frame's time goes
-    /// into memory: what every frame reads of all of them is in RoamBounds, and what only split ones have in Links.
+    /// A diamond that is split or could be: at least one of its parents is split. There are two for each triangle, and a frame's
+    /// time goes into memory: what every frame reads of all of them is in RoamBounds, and what only split ones have in Links.
     struct Diamond {
         std::array<std::uint32_t, 2> parent{kNone, kNone};  ///< those that are split, at q1 and q3
         std::uint32_t links = kNone;                        ///< place in links_; none while not split
@@ -62,13 +62,13 @@ private:
         std::array<std::uint32_t, 4> child{kNone, kNone, kNone, kNone};  ///< by side, see leafLink(); none where flat (error 0)
         std::uint32_t vertex = kNoVertex;
         std::uint8_t splitChildren = 0;
-        bool atRim = false;             ///< has one triangle only
+        bool atRim = false;  ///< has one triangle only
         bool finest = false;
         std::uint8_t solidCells = 0xf;  ///< finest: bit per cell around the centre, see cellBit()
     };
 
-    /// A child by its number, with the half of it that lies at the parent; or, once it is split, by its place in links_, so that a walk
-    /// over the triangles reads nothing else.
+    /// A child by its number, with the half of it that lies at the parent; or, once it is split, by its place in links_, so that a
+    /// walk over the triangles reads nothing else.
     static constexpr std::uint32_t kSplitLink = 0x80000000u;
     static std::uint32_t leafLink(std::uint32_t number, unsigned half) { return 2 * number + half; }
     static std::uint32_t splitLink(std::uint32_t place, unsigned half) { return kSplitLink | (2 * place + half); }
@@ -139,9 +139,9 @@ private:
     bool whole_;
     bool regular_;
     int columns_;
-    RoamBounds bounds_;              ///< by the number of a diamond, as the next
+    RoamBounds bounds_;  ///< by the number of a diamond, as the next
     std::vector<Diamond> diamonds_;
-    std::vector<std::uint16_t> due_;  ///< by block of bounds_: frame in which it must be evaluated again, modulo 2^16
+    std::vector<std::uint16_t> due_;           ///< by block of bounds_: frame in which it must be evaluated again, modulo 2^16
     std::vector<std::uint64_t> freeDiamonds_;  ///< a bit for each that is free
     std::size_t freeWord_ = 0;                 ///< no word before it has a bit
     std::size_t freeCount_ = 0;

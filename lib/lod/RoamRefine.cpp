@@ -17,8 +17,7 @@ const auto kLowestFirst = [](const auto& a, const auto& b) { return a.priority >
 
 }  // namespace
 
-DrawList RoamMesh::select(const SampleGrid& grid, const View& view, const LodSettings& settings)
-{
+DrawList RoamMesh::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
     const bool isFirst = !space_;
     const bool atRest = !isFirst && report_.converged && view == view_ && settings == settings_;
     SelectionReport last = report_;
@@ -49,8 +48,7 @@ DrawList RoamMesh::select(const SampleGrid& grid, const View& view, const LodSet
     return list;
 }
 
-void RoamMesh::prepare(const SampleGrid& grid, const View& view, const LodSettings& settings, bool wasDone)
-{
+void RoamMesh::prepare(const SampleGrid& grid, const View& view, const LodSettings& settings, bool wasDone) {
     const bool sameSettings = settings == settings_;
     view_ = view;
     settings_ = settings;
@@ -58,24 +56,23 @@ void RoamMesh::prepare(const SampleGrid& grid, const View& view, const LodSettin
     operations_ = 0;
     space_.emplace(view, grid.localFromFrame(), grid.isRegular() ? ErrorDirection::Vertical : ErrorDirection::Any);
     // A budget needs all priorities in order, not only on which side of a threshold they are.
-    mayDefer_ = motion_.advance(view, grid.localFromFrame()) && sameSettings && wasDone && settings.cull && settings.triangleBudget == 0 &&
-                space_->largestFactor() <= request_.assumedFactor;
+    mayDefer_ = motion_.advance(view, grid.localFromFrame()) && sameSettings && wasDone && settings.cull &&
+                settings.triangleBudget == 0 && space_->largestFactor() <= request_.assumedFactor;
     const float assumedFactor = mayDefer_ ? request_.assumedFactor : 1.05f * space_->largestFactor();
     const glm::vec4 w = space_->depth();
     const float depthPerLength = glm::length(glm::vec3(w) / motion_.unitLength());
     const float depthAtEye = std::max(0.0f, glm::dot(glm::vec3(w), motion_.eye()) + w.w);
-    request_ = {&*space_, &motion_, settings.cull, splitThreshold(), settings.pixelError, depthAtEye, depthPerLength, assumedFactor};
+    request_ = {&*space_,   &motion_,       settings.cull, splitThreshold(), settings.pixelError,
+                depthAtEye, depthPerLength, assumedFactor};
     update();
 }
 
-void RoamMesh::evaluate(std::uint32_t number)
-{
+void RoamMesh::evaluate(std::uint32_t number) {
     bounds_.evaluate(number, request_);
     due_[number / RoamBounds::kBlock] = std::uint16_t(frame_ + 1);
 }
 
-void RoamMesh::enqueue(std::uint32_t number)
-{
+void RoamMesh::enqueue(std::uint32_t number) {
     const Candidate candidate{bounds_.priority(number), number};
     if (!isSplit(number)) {
         if (candidate.priority > splitThreshold()) {
@@ -90,8 +87,7 @@ void RoamMesh::enqueue(std::uint32_t number)
     }
 }
 
-void RoamMesh::gather(std::uint32_t number)
-{
+void RoamMesh::gather(std::uint32_t number) {
     const float priority = bounds_.priority(number);
     if (!isSplit(number)) {
         if (priority > request_.threshold)
@@ -103,8 +99,7 @@ void RoamMesh::gather(std::uint32_t number)
     }
 }
 
-void RoamMesh::update()
-{
+void RoamMesh::update() {
     const ProfileScope scope("roam: evaluate");
     splitQueue_.clear();
     mergeQueue_.clear();
@@ -119,8 +114,7 @@ void RoamMesh::update()
     std::make_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
 }
 
-std::uint32_t RoamMesh::triangleCost(std::uint32_t number) const
-{
+std::uint32_t RoamMesh::triangleCost(std::uint32_t number) const {
     if (number == root_) return 2;
     const Diamond& d = diamonds_[number];
     const DiamondShape shape(bounds_.centre(number));
@@ -135,8 +129,7 @@ std::uint32_t RoamMesh::triangleCost(std::uint32_t number) const
     return cost;
 }
 
-void RoamMesh::mergeAndQueueParents(std::uint32_t number)
-{
+void RoamMesh::mergeAndQueueParents(std::uint32_t number) {
     const auto parents = diamonds_[number].parent;
     merge(number);
     for (const std::uint32_t parent : parents)
@@ -147,8 +140,7 @@ void RoamMesh::mergeAndQueueParents(std::uint32_t number)
         }
 }
 
-bool RoamMesh::makeRoom(const Candidate& candidate)
-{
+bool RoamMesh::makeRoom(const Candidate& candidate) {
     while (meshTriangles_ + triangleCost(candidate.diamond) > settings_.triangleBudget) {
         if (mergeQueue_.empty() || !(mergeQueue_.front().priority < candidate.priority)) return false;
         if (operations_ >= operationCap_) {
@@ -167,8 +159,7 @@ bool RoamMesh::makeRoom(const Candidate& candidate)
     return true;
 }
 
-void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit)
-{
+void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit) {
     const ProfileScope scope("roam: split and merge");
     const std::uint32_t budget = settings_.triangleBudget;
     while (budget > 0 && meshTriangles_ > budget && !mergeQueue_.empty()) {
@@ -199,8 +190,7 @@ void RoamMesh::refine(const SampleGrid& grid, std::uint32_t limit)
     coarsen(limit);
 }
 
-void RoamMesh::coarsen(std::uint32_t limit)
-{
+void RoamMesh::coarsen(std::uint32_t limit) {
     while (!mergeQueue_.empty() && mergeQueue_.front().priority <= splitThreshold()) {
         if (operations_ >= limit) {
             report_.converged = false;

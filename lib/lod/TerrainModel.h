@@ -8,8 +8,8 @@
 
 namespace terrain {
 
-/// Bounds and errors of one grid, without any pointer to the samples. Bounds come first and cheap; errors only once something is drawn
-/// with level of detail.
+/// Bounds and errors of one grid, without any pointer to the samples. Bounds come first and cheap; errors only once something is
+/// drawn with level of detail.
 struct TerrainModel {
     std::shared_ptr<const BoxPyramid> boxes;
     std::shared_ptr<const ErrorHierarchy> errors;

@@ -8,8 +8,7 @@
 
 namespace terrain {
 
-void ViewMotion::read(const View& view, const glm::dmat4& localFromFrame)
-{
+void ViewMotion::read(const View& view, const glm::dmat4& localFromFrame) {
     const glm::dmat4 clip = view.clipFromLocal * localFromFrame, rows = glm::transpose(clip);
     for (int axis = 0; axis < 3; ++axis) {
         forms_[std::size_t(2 * axis)] = rows[3] + rows[axis];
@@ -22,8 +21,7 @@ void ViewMotion::read(const View& view, const glm::dmat4& localFromFrame)
     eye_ = std::fabs(eye.w) > 1e-12 * glm::length(glm::dvec3(eye)) ? glm::dvec3(eye) / eye.w : glm::dvec3(0.0);
 }
 
-bool ViewMotion::advance(const View& view, const glm::dmat4& localFromFrame)
-{
+bool ViewMotion::advance(const View& view, const glm::dmat4& localFromFrame) {
     const ViewMotion before = *this;
     read(view, localFromFrame);
     known_ = true;
@@ -36,7 +34,9 @@ bool ViewMotion::advance(const View& view, const glm::dmat4& localFromFrame)
         bound.turn = std::max(bound.turn, float(glm::length(glm::dvec3(change) / unitLength_)));
     }
     const float travel = float(glm::length((eye_ - before.eye_) * unitLength_));
-    const auto within = [](const Bound& now, const Bound& assumed) { return now.shift <= assumed.shift && now.turn <= assumed.turn; };
+    const auto within = [](const Bound& now, const Bound& assumed) {
+        return now.shift <= assumed.shift && now.turn <= assumed.turn;
+    };
     // Once in a while what is assumed follows a camera that has become slower.
     if (within(planes, planes_) && within(depth, depth_) && travel <= travel_ && ++age_ < 2 * kLongest) return true;
     constexpr float kFaster = 1.25f;

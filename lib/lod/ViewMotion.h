@@ -11,10 +11,10 @@
 
 namespace terrain {
 
-/// Bounds on the change, from one frame to the next, of the linear forms that a view is tested by: the planes of its volume and its depth
-/// w. With E the eye and r the distance of a point from it, a form changes by at most `shift + turn r`. A somewhat faster motion than the
-/// latest one is assumed; as long as the real one stays below it, what was found with a margin holds for as many frames as
-/// the margin lasts (Duchaineau et al. 1997, sect. 6.2 and 6.3: incremental labels, deferred priorities).
+/// Bounds on the change, from one frame to the next, of the linear forms that a view is tested by: the planes of its volume and its
+/// depth w. With E the eye and r the distance of a point from it, a form changes by at most `shift + turn r`. A somewhat faster
+/// motion than the latest one is assumed; as long as the real one stays below it, what was found with a margin holds for as many
+/// frames as the margin lasts (Duchaineau et al. 1997, sect. 6.2 and 6.3: incremental labels, deferred priorities).
 class ViewMotion {
 public:
     static constexpr int kLongest = 32;  ///< frames
@@ -29,7 +29,7 @@ public:
 
     const Bound& planes() const { return planes_; }
     const Bound& depth() const { return depth_; }
-    glm::vec3 eye() const { return glm::vec3(eye_); }               ///< in the frame
+    glm::vec3 eye() const { return glm::vec3(eye_); }                ///< in the frame
     glm::vec3 unitLength() const { return glm::vec3(unitLength_); }  ///< of the frame's axes, in local units
     /// Distance that the eye itself moves in kLongest frames.
     float drift() const { return float(kLongest) * travel_; }
