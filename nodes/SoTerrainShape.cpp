@@ -12,7 +12,8 @@
 
   Normals, materials and texture coordinates are taken as SoQuadMesh takes them, with their bindings. Without normals the node computes
   smooth ones, without texture coordinates the texture spans the terrain. The front of a height field is its upper side, whatever
-  SoShapeHints::vertexOrdering says and whichever way rows run, so that it is never black or culled from above. With a binding per face or row a vertex has the value of the
+  SoShapeHints::vertexOrdering says and whichever way rows run, so that it is never black or culled from above. Its underside is drawn unless
+  nothing of it can be seen. With a binding per face or row a vertex has the value of the
   face or row that begins at it. SoDrawStyle, SoComplexity, SoShapeHints, lights, fog, clip planes, several texture units and
   shader programs act as on any Coin shape: vertices are the samples themselves, drawn from plain vertex arrays.
 
@@ -66,12 +67,17 @@
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
 #include <Inventor/bundles/SoMaterialBundle.h>
+#include <Inventor/elements/SoClipPlaneElement.h>
 #include <Inventor/elements/SoComplexityElement.h>
+#include <Inventor/elements/SoDepthBufferElement.h>
+#include <Inventor/elements/SoDrawStyleElement.h>
 #include <Inventor/elements/SoGLCacheContextElement.h>
 #include <Inventor/elements/SoGLLazyElement.h>
+#include <Inventor/elements/SoGLShaderProgramElement.h>
 #include <Inventor/elements/SoModelMatrixElement.h>
 #include <Inventor/elements/SoProjectionMatrixElement.h>
 #include <Inventor/elements/SoShapeHintsElement.h>
+#include <Inventor/elements/SoShapeStyleElement.h>
 #include <Inventor/elements/SoViewingMatrixElement.h>
 #include <Inventor/elements/SoViewportRegionElement.h>
 #include <Inventor/errors/SoDebugError.h>
@@ -85,6 +91,7 @@
 
 #include "StateAttributes.h"
 #include "lod/BruteForceMesh.h"
+#include "lod/UpperSide.h"
 
 SO_NODE_ABSTRACT_SOURCE(SoTerrainShape);
 
@@ -206,10 +213,11 @@ terrain::LodSettings SoTerrainShape::Private::settingsFor(SoState * state, const
     return settings;
 }
 
-void SoTerrainShape::Private::select(TerrainView & view, SoState * state, const TerrainGrid & data, const StateAttributes & attributes)
+void SoTerrainShape::Private::select(TerrainView & view, const terrain::View & camera, SoState * state, const TerrainGrid & data,
+                                     const StateAttributes & attributes)
 {
     const Clock::time_point start = Clock::now();
-    const terrain::DrawList list = view.algorithm->select(data.grid, viewOf(state), settingsFor(state, data));
+    const terrain::DrawList list = view.algorithm->select(data.grid, camera, settingsFor(state, data));
     statistics.selectMilliseconds = millisecondsSince(start);
     view.report = list.report;
     const Clock::time_point selected = Clock::now();
@@ -218,6 +226,22 @@ void SoTerrainShape::Private::select(TerrainView & view, SoState * state, const 
     view.hasMesh = true;
     statistics.splits = list.report.splits;
     statistics.merges = list.report.merges;
+}
+
+bool SoTerrainShape::Private::hidesUndersides(const TerrainView & view, const terrain::View & camera, SoState * state,
+                                              const TerrainGrid & data) const
+{
+    // A frozen mesh, or one still on its way, keeps no error to this camera.
+    if (master->freeze.getValue() || !std::isfinite(view.report.errorPixels)) return false;
+    // What is cut open or seen through shows its underside, and a shader may move vertices anywhere.
+    constexpr unsigned int kTransparent = SoShapeStyleElement::TRANSP_MATERIAL | SoShapeStyleElement::TRANSP_TEXTURE;
+    if (SoDrawStyleElement::get(state) != SoDrawStyleElement::FILLED || SoClipPlaneElement::getInstance(state)->getNum() > 0 ||
+        (SoShapeStyleElement::get(state)->getFlags() & kTransparent) != 0 || SoGLShaderProgramElement::get(state))
+        return false;
+    const SoDepthBufferElement::DepthWriteFunction nearer = SoDepthBufferElement::getFunction(state);
+    if (!SoDepthBufferElement::getTestEnable(state) || (nearer != SoDepthBufferElement::LESS && nearer != SoDepthBufferElement::LEQUAL))
+        return false;
+    return terrain::showsUpperSideOnly(data.grid, *data.model.boxes, camera);
 }
 
 void SoTerrainShape::Private::render(SoGLRenderAction * action)
@@ -240,11 +264,15 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     materials.sendFirst();
     const StateAttributes attributes(action, data->grid, true);
     for (const std::string & problem : attributes.problems()) master->warnOnce(problem.c_str());
-    if (!master->freeze.getValue() || !view.hasMesh) select(view, state, *data, attributes);
+    const terrain::View camera = viewOf(state);
+    if (!master->freeze.getValue() || !view.hasMesh) select(view, camera, state, *data, attributes);
 
     const Clock::time_point start = Clock::now();
     if (attributes.hasOverallNormal()) glNormal3fv(attributes.normal(0, 0).getValue());
+    const bool cull = !glIsEnabled(GL_CULL_FACE) && hidesUndersides(view, camera, state, *data);
+    if (cull) glEnable(GL_CULL_FACE);
     view.renderer.draw();
+    if (cull) glDisable(GL_CULL_FACE);
     if (attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
     statistics.drawMilliseconds = millisecondsSince(start);
 

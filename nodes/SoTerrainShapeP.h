@@ -23,7 +23,10 @@ public:
     std::optional<TerrainGrid> findGrid(SoState * state, bool withErrors);
     void render(SoGLRenderAction * action);
     terrain::LodSettings settingsFor(SoState * state, const TerrainGrid & data) const;
-    void select(TerrainView & view, SoState * state, const TerrainGrid & data, const StateAttributes & attributes);
+    void select(TerrainView & view, const terrain::View & camera, SoState * state, const TerrainGrid & data,
+                const StateAttributes & attributes);
+    /// Whether undersides of triangles are hidden by upper sides, so that GL may leave them out and the picture stays the same.
+    bool hidesUndersides(const TerrainView & view, const terrain::View & camera, SoState * state, const TerrainGrid & data) const;
 
     SoTerrainShape * master;
     GridCache grids;

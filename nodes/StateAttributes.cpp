@@ -150,6 +150,14 @@ int StateAttributes::materialIndex(int column, int row) const
     return boundIndex(materialBinding_, column, row, lazy_->getNumDiffuse());
 }
 
+void StateAttributes::prefetch(std::uint32_t sample) const
+{
+    if (format_.normals && normalBinding_ == PER_VERTEX) __builtin_prefetch(&normals_[sample]);
+    for (const int unit : format_.textureUnits)
+        if (textureCoordinates_->getDimension(unit) == 2 && std::int64_t(sample) < textureCoordinates_->getNum(unit))
+            __builtin_prefetch(&textureCoordinates_->getArrayPtr2(unit)[sample]);
+}
+
 void StateAttributes::write(std::uint32_t sample, std::uint8_t * out) const
 {
     const int column = int(sample % std::uint32_t(grid_.columns())), row = int(sample / std::uint32_t(grid_.columns()));

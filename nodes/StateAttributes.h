@@ -28,6 +28,7 @@ public:
     const terrain::VertexFormat & format() const override { return format_; }
     std::uint64_t version() const override { return version_; }
     void write(std::uint32_t sample, std::uint8_t * out) const override;
+    void prefetch(std::uint32_t sample) const override;
 
     /// What the state has too few of, and what is done about it.
     const std::vector<std::string> & problems() const { return problems_; }

@@ -38,6 +38,16 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
     uploaded_ += count * (sizeof(glm::vec3) + stride);
 }
 
+void TerrainRenderer::writeNew(const DrawList& list, const VertexSource& source) {
+    // New vertices lie all over arrays that no cache holds.
+    constexpr std::size_t kAhead = 8;
+    const auto vertices = list.newVertices;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (i + kAhead < vertices.size()) source.prefetch(list.samples[vertices[i + kAhead]]);
+        source.write(list.samples[vertices[i]], mirror_.data() + vertices[i] * format_.stride());
+    }
+}
+
 void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& source, bool everything) {
     if (list.positionsChanged || everything) {
         positions_.fill(GL_ARRAY_BUFFER, list.positions.data(), list.positions.size_bytes());
@@ -50,7 +60,7 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
         for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex)
             source.write(list.samples[vertex], mirror_.data() + vertex * stride);
     else
-        for (const std::uint32_t vertex : list.newVertices) source.write(list.samples[vertex], mirror_.data() + vertex * stride);
+        writeNew(list, source);
     attributes_.refill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size());
     uploaded_ += mirror_.size();
 }

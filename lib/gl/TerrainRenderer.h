@@ -31,6 +31,8 @@ public:
     virtual std::uint64_t version() const = 0;
     /// `out` has format().stride() bytes.
     virtual void write(std::uint32_t sample, std::uint8_t* out) const = 0;
+    /// The sample will soon be written.
+    virtual void prefetch(std::uint32_t) const {}
 };
 
 /// The buffers of one view in one GL context. The vertices are the samples themselves, so lights, fog, clip planes, texture units
@@ -50,6 +52,7 @@ public:
 
 private:
     void uploadSamples(const SampleGrid& grid, const VertexSource& source);
+    void writeNew(const DrawList& list, const VertexSource& source);
     void uploadPool(const DrawList& list, const VertexSource& source, bool everything);
 
     GlStream positions_, indices_;

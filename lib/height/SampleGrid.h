@@ -50,6 +50,11 @@ public:
     /// Position in the grid's frame.
     glm::vec3 framePosition(int column, int row) const;
     bool isHole(int column, int row) const;
+    /// Starts loading a sample that will soon be asked for.
+    void prefetch(int column, int row) const {
+        const std::size_t sample = std::size_t(row) * pitch_ + std::size_t(column);
+        __builtin_prefetch(heights_ ? heights_ + sample * stride_ : points_ + index(column, row) * 3);
+    }
 
     const glm::dmat4& localFromFrame() const { return localFromFrame_; }
     /// Local axis (0, 1, 2) that heights of a regular grid run along.

@@ -84,6 +84,8 @@ BoxPyramid::BoxPyramid(const SampleGrid& grid) : gridColumns_(grid.columns()), g
         levels_.push_back(std::move(coarse));
     }
     findAll(grid);
+    for (int row = 0; row < gridRows_ && !hasHoles_; ++row)
+        for (int column = 0; column < gridColumns_ && !hasHoles_; ++column) hasHoles_ = grid.isHole(column, row);
 }
 
 void BoxPyramid::findAll(const SampleGrid& grid) {

@@ -39,6 +39,8 @@ public:
     static Bounds exactBounds(const SampleGrid& grid, int column0, int row0, int column1, int row1);
     /// Exact bounds of all valid samples.
     const Bounds& all() const { return all_; }
+    /// Whether any sample is one.
+    bool hasHoles() const { return hasHoles_; }
     std::size_t bytes() const;
 
 private:
@@ -55,6 +57,7 @@ private:
     bool regular_ = true;
     std::vector<Level> levels_;
     Bounds all_{};
+    bool hasHoles_ = false;
 };
 
 /// The box of bounds that are not empty.

@@ -122,6 +122,30 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
     }
 }
 
+SOTERRAIN_VECTOR_CLONES
+BlockEvaluation summarize(const float* priority, const float* frames, float threshold) {
+    float soonest = float(ViewMotion::kLongest);
+    std::uint32_t above = 0, inView = 0;
+#pragma omp simd reduction(min : soonest) reduction(| : above, inView)
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        soonest = soonest < frames[i] ? soonest : frames[i];
+        above |= priority[i] > threshold ? 1u << i : 0u;
+        inView |= priority[i] > 0.0f ? 1u << i : 0u;
+    }
+    return {std::uint16_t(above), std::uint16_t(inView), std::max(1, int(soonest))};
+}
+
+SOTERRAIN_VECTOR_CLONES
+float largestAmong(const float* priority, std::uint32_t among) {
+    float largest = 0.0f;
+#pragma omp simd reduction(max : largest)
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const float value = (among & 1u << i) != 0 ? priority[i] : 0.0f;
+        largest = largest > value ? largest : value;
+    }
+    return largest;
+}
+
 }  // namespace
 
 std::size_t RoamBounds::append() {
@@ -196,7 +220,7 @@ float RoamBounds::turnedError(float error, const Box& box, const EvaluationReque
     return 0.5f * error * request.space->largestFactor() / (request.depthAtEye + request.depthPerLength * distance);
 }
 
-int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& request) {
+BlockEvaluation RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& request) {
     const std::size_t first = block * kBlock;
     Lanes lanes;
     if (regular_)
@@ -210,9 +234,11 @@ int RoamBounds::evaluateBlock(std::size_t block, const EvaluationRequest& reques
         for (std::size_t number = first; number < first + kBlock; ++number)
             if (priority_[number] == 0.0f && error_[number] != 0)
                 priority_[number] = turnedError(ErrorHierarchy::decode(error_[number]), box(number), request);
-    float soonest = float(ViewMotion::kLongest);
-    for (const float lasting : frames) soonest = std::min(soonest, lasting);
-    return std::max(1, int(soonest));
+    return summarize(&priority_[first], frames, request.threshold);
+}
+
+float RoamBounds::largestPriority(std::size_t block, std::uint16_t among) const {
+    return largestAmong(&priority_[block * kBlock], among);
 }
 
 std::size_t RoamBounds::bytes() const {

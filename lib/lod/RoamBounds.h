@@ -27,6 +27,13 @@ struct EvaluationRequest {
     float assumedFactor = 0.0f;   ///< ScreenSpace::largestFactor() will not exceed it while results are kept
 };
 
+/// What evaluating a block of diamonds found; a bit for each, the first one the lowest.
+struct BlockEvaluation {
+    std::uint16_t above = 0;   ///< priority above the request's threshold
+    std::uint16_t inView = 0;  ///< priority above 0
+    int frames = 1;            ///< priorities stay on the same side of the request's limits for so long: 1 to ViewMotion::kLongest
+};
+
 /// Structure of arrays, by the number of a diamond: 16 bytes each for a regular grid, whose heights and errors
 /// are rounded outwards to 16 bits. A place that is not in use has an error of 0.
 class RoamBounds {
@@ -49,10 +56,11 @@ public:
     glm::ivec2 centre(std::size_t number) const { return {column_[number], row_[number]}; }
     /// Bound on the screen error in pixels when last evaluated; 0 outside of the view.
     float priority(std::size_t number) const { return priority_[number]; }
+    /// Largest priority among those of a block whose bits are set.
+    float largestPriority(std::size_t block, std::uint16_t among) const;
 
-    /// Priorities of one block. Returns the frames for which they stay on the same side of the request's limits: at least 1, at
-    /// most ViewMotion::kLongest.
-    int evaluateBlock(std::size_t block, const EvaluationRequest& request);
+    /// Evaluates the priorities of one block.
+    BlockEvaluation evaluateBlock(std::size_t block, const EvaluationRequest& request);
     /// Priority of one diamond.
     void evaluate(std::size_t number, const EvaluationRequest& request);
 

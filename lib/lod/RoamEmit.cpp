@@ -24,11 +24,10 @@ public:
     }
 
     std::uint32_t* link(std::uint32_t* out, std::uint32_t link, std::uint32_t first, std::uint32_t apex, std::uint32_t last) const {
-        if (link != kNone) {
-            if (link & kSplitLink) return split(out, links_[(link & ~kSplitLink) / 2], link % 2, first, apex, last);
-            if (mesh_.bounds_.priority(link / 2) == 0.0f) return out;
-        }
-        return put(out, first, apex, last);
+        if (link & kSplitLink) return split(out, links_[(link & ~kSplitLink) / 2], link % 2, first, apex, last);
+        // Written in any case, and then written over: cheaper than a branch that can't be foreseen.
+        std::uint32_t* const drawn = put(out, first, apex, last);
+        return link & kHiddenLink ? out : drawn;
     }
 
 private:
@@ -36,7 +35,7 @@ private:
                          std::uint32_t last) const {
         if (d.finest) return halfCells(out, d, half, first, apex, last);
         const std::uint32_t left = d.child[2 * half], right = d.child[2 * half + 1], middle = d.vertex;
-        if (right != kNone && (right & kSplitLink)) __builtin_prefetch(&links_[(right & ~kSplitLink) / 2]);
+        if (right & kSplitLink) __builtin_prefetch(&links_[(right & ~kSplitLink) / 2]);
         // The middle is the apex of both halves.
         out = link(out, left, apex, middle, first);
         return link(out, right, last, middle, apex);
@@ -82,8 +81,8 @@ std::uint32_t* RoamMesh::emitAll(std::uint32_t* out) const {
 void RoamMesh::emit() {
     const ProfileScope scope("roam: emit triangles");
     const std::size_t most = std::size_t(meshTriangles_) * 3;
-    if (most > indices_.capacity()) indices_.reserve(most + most / 8);
-    indices_.resize(most);
+    if (most + 3 > indices_.capacity()) indices_.reserve(most + most / 8 + 3);
+    indices_.resize(most + 3);
     std::uint32_t* const begin = indices_.data();
     const std::uint32_t* const end = whole_ ? (settings_.clockwise ? emitAll<true, true>(begin) : emitAll<true, false>(begin))
                                             : (settings_.clockwise ? emitAll<false, true>(begin) : emitAll<false, false>(begin));

@@ -47,14 +47,10 @@ std::uint32_t RoamMesh::addVertex(const SampleGrid& grid, glm::ivec2 at) {
     return vertex;
 }
 
-std::uint32_t RoamMesh::find(glm::ivec2 centre) const {
-    return table_.find(centre, [this](std::uint32_t number) { return bounds_.centre(number); });
-}
-
 std::uint32_t RoamMesh::vertexAt(glm::ivec2 at) const {
     const bool right = at.x == side_, top = at.y == side_;
     if ((right || at.x == 0) && (top || at.y == 0)) return corners_[top ? (right ? 2 : 3) : (right ? 1 : 0)];
-    const std::uint32_t number = find(at);
+    const std::uint32_t number = table_.find(at);
     return number == kNone || !isSplit(number) ? kNoVertex : links(number).vertex;
 }
 
@@ -71,7 +67,7 @@ std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape
     if (freeCount_ == 0) {
         number = std::uint32_t(bounds_.append());
         grow(diamonds_);
-        due_.resize(bounds_.blocks(), std::uint16_t(frame_ + 1));
+        blocks_.resize(bounds_.blocks());
         freeDiamonds_.resize(number / 64 + 1);
     } else {
         // The lowest first keeps what is in use together.
@@ -82,8 +78,10 @@ std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape
         number = std::uint32_t(freeWord_ * 64 + bit);
     }
     diamonds_[number] = Diamond{};
+    blockOf(number).leaf |= bitOf(number);
+    blockOf(number).due = std::uint16_t(frame_ + 1);
     bound(grid, shape, number);
-    table_.insert(number, [this](std::uint32_t other) { return bounds_.centre(other); });
+    table_.insert(shape.centre, number);
     // Before the first selection there is no view; that selection evaluates what is there.
     if (space_) {
         evaluate(number);
@@ -93,8 +91,11 @@ std::uint32_t RoamMesh::create(const SampleGrid& grid, const DiamondShape& shape
 }
 
 void RoamMesh::destroy(std::uint32_t number) {
-    table_.erase(number, [this](std::uint32_t other) { return bounds_.centre(other); });
+    table_.erase(bounds_.centre(number));
     bounds_.clear(number);
+    Block& block = blockOf(number);
+    block.leaf &= std::uint16_t(~bitOf(number));
+    block.hidden &= std::uint16_t(~bitOf(number));
     freeDiamonds_[number / 64] |= std::uint64_t(1) << (number % 64);
     freeWord_ = std::min(freeWord_, std::size_t(number / 64));
     ++freeCount_;
@@ -115,7 +116,14 @@ void RoamMesh::relink(std::uint32_t number, std::uint32_t from, std::uint32_t to
     for (unsigned half = 0; half < 2; ++half)
         if (const std::uint32_t parent = diamonds_[number].parent[half]; parent != kNone)
             for (std::uint32_t& link : links(parent).child)
-                if (link == from + half) link = to + half;
+                if ((link & ~kHiddenLink) == from + half) link = to + half;
+}
+
+void RoamMesh::showOrHide(std::uint32_t leaf) {
+    const bool hidden = bounds_.priority(leaf) == 0.0f;
+    if (((blockOf(leaf).hidden & bitOf(leaf)) != 0) == hidden) return;
+    blockOf(leaf).hidden ^= bitOf(leaf);
+    relink(leaf, 2 * leaf, leafLink(leaf, 0));
 }
 
 bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number) {
@@ -124,7 +132,7 @@ bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number) {
     for (std::size_t half = 0; half < 2 && number != root_; ++half) {
         const glm::ivec2 apex = shape.corner[half ? 3 : 1];
         if (diamonds_[number].parent[half] != kNone || !inSquare(apex)) continue;
-        std::uint32_t parent = find(apex);
+        std::uint32_t parent = table_.find(apex);
         if (parent == kNone) {
             // Its own parents may be split already and have passed it over: beyond the grid an error can be 0 where a child's is
             // not.
@@ -147,14 +155,17 @@ bool RoamMesh::split(const SampleGrid& grid, std::uint32_t number) {
     }
     Links& l = links(number);
     l = Links{};
+    Block& block = blockOf(number);
+    block.leaf &= std::uint16_t(~bitOf(number));
+    block.mergeable |= bitOf(number);
     l.finest = shape.isFinest();
     l.atRim = number != root_ && isAtRim(shape);
     l.vertex = addVertex(grid, shape.centre);
     if (l.vertex != kNoVertex) vertices_[l.vertex].edge = {vertexAt(shape.corner[0]), vertexAt(shape.corner[2])};
     if (l.finest && !whole_) l.solidCells = findSolidCells(grid, shape.centre);
     for (const std::uint32_t parent : diamonds_[number].parent)
-        if (parent != kNone) ++links(parent).splitChildren;
-    relink(number, leafLink(number, 0), splitLink(diamonds_[number].links, 0));
+        if (parent != kNone && links(parent).splitChildren++ == 0) blockOf(parent).mergeable &= std::uint16_t(~bitOf(parent));
+    relink(number, 2 * number, splitLink(diamonds_[number].links, 0));
     meshTriangles_ += l.atRim ? 1 : 2;
     ++report_.splits;
     ++operations_;
@@ -170,7 +181,7 @@ void RoamMesh::link(std::uint32_t parent, unsigned side, std::uint32_t child, co
 
 void RoamMesh::linkToParents(std::uint32_t number, const DiamondShape& shape) {
     for (const std::size_t apex : {1u, 3u}) {
-        const std::uint32_t parent = inSquare(shape.corner[apex]) ? find(shape.corner[apex]) : kNone;
+        const std::uint32_t parent = inSquare(shape.corner[apex]) ? table_.find(shape.corner[apex]) : kNone;
         if (parent == kNone || !isSplit(parent)) continue;
         const DiamondShape parentShape(shape.corner[apex]);
         for (unsigned side = 0; side < 4; ++side)
@@ -184,7 +195,7 @@ void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const
         // At the rim of the square one half of the diamond, and its two sides, do not exist.
         if (!inSquare(centre)) continue;
         const DiamondShape childShape(centre);
-        std::uint32_t child = find(centre);
+        std::uint32_t child = table_.find(centre);
         if (child == kNone) {
             if (!(model_.errors->error(grid, childShape) > 0.0f)) continue;
             child = create(grid, childShape);
@@ -195,13 +206,18 @@ void RoamMesh::adoptChildren(const SampleGrid& grid, std::uint32_t number, const
 
 void RoamMesh::merge(std::uint32_t number) {
     for (const std::uint32_t link : links(number).child) {
-        if (link == kNone) continue;
-        Diamond& child = diamonds_[link / 2];
+        if (link == kFlatLink) continue;
+        const std::uint32_t leaf = (link & ~kHiddenLink) / 2;
+        Diamond& child = diamonds_[leaf];
         child.parent[link % 2] = kNone;
-        if (child.parent[0] == kNone && child.parent[1] == kNone) destroy(link / 2);
+        if (child.parent[0] == kNone && child.parent[1] == kNone) destroy(leaf);
     }
     for (const std::uint32_t parent : diamonds_[number].parent)
-        if (parent != kNone) --links(parent).splitChildren;
+        if (parent != kNone && --links(parent).splitChildren == 0) blockOf(parent).mergeable |= bitOf(parent);
+    Block& block = blockOf(number);
+    block.mergeable &= std::uint16_t(~bitOf(number));
+    block.leaf |= bitOf(number);
+    block.hidden = std::uint16_t((block.hidden & ~bitOf(number)) | (bounds_.priority(number) == 0.0f ? bitOf(number) : 0));
     relink(number, splitLink(diamonds_[number].links, 0), leafLink(number, 0));
     if (const std::uint32_t vertex = links(number).vertex; vertex != kNoVertex) {
         vertices_[vertex].edge[0] = freeVertex_;
@@ -218,9 +234,9 @@ void RoamMesh::merge(std::uint32_t number) {
 
 std::size_t RoamMesh::bytes() const {
     const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
-    return bounds_.bytes() + held(diamonds_) + held(due_) + held(freeDiamonds_) + held(links_) + table_.bytes() + held(positions_) +
-           held(vertices_) + held(samples_) + held(newVertices_) + held(indices_) + held(splitQueue_) + held(mergeQueue_) +
-           held(moving_) + held(moved_);
+    return bounds_.bytes() + held(diamonds_) + held(blocks_) + held(freeDiamonds_) + held(links_) + table_.bytes() +
+           held(positions_) + held(vertices_) + held(samples_) + held(newVertices_) + held(indices_) + held(splitQueue_) +
+           held(mergeQueue_) + held(moving_) + held(moved_);
 }
 
 }  // namespace terrain

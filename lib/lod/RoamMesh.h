@@ -59,7 +59,7 @@ private:
 
     /// What a split diamond has beside.
     struct Links {
-        std::array<std::uint32_t, 4> child{kNone, kNone, kNone, kNone};  ///< by side, see leafLink(); none where flat (error 0)
+        std::array<std::uint32_t, 4> child{kFlatLink, kFlatLink, kFlatLink, kFlatLink};  ///< by side
         std::uint32_t vertex = kNoVertex;
         std::uint8_t splitChildren = 0;
         bool atRim = false;  ///< has one triangle only
@@ -67,12 +67,26 @@ private:
         std::uint8_t solidCells = 0xf;  ///< finest: bit per cell around the centre, see cellBit()
     };
 
-    /// A child by its number, with the half of it that lies at the parent; or, once it is split, by its place in links_, so that a
-    /// walk over the triangles reads nothing else.
-    static constexpr std::uint32_t kSplitLink = 0x80000000u;
-    static std::uint32_t leafLink(std::uint32_t number, unsigned half) { return 2 * number + half; }
+    /// What a block of diamonds is at present; a bit for each.
+    struct Block {
+        std::uint16_t leaf = 0;       ///< in use and not split
+        std::uint16_t mergeable = 0;  ///< split, with no split child
+        std::uint16_t hidden = 0;     ///< leaf, outside of the view, and known as such to whoever links to it
+        std::uint16_t due = 0;        ///< frame in which it must be evaluated again, modulo 2^16
+    };
+
+    /// A child by its number, with the half of it that lies at the parent and whether it is outside of the view; or, once it is
+    /// split, by its place in links_: so a walk over the triangles reads nothing else.
+    static constexpr std::uint32_t kSplitLink = 0x80000000u, kHiddenLink = 0x40000000u;
+    /// No child, because its error is 0: drawn.
+    static constexpr std::uint32_t kFlatLink = 0x3fffffffu;
+    std::uint32_t leafLink(std::uint32_t number, unsigned half) const {
+        return 2 * number + half + (blockOf(number).hidden & bitOf(number) ? kHiddenLink : 0u);
+    }
     static std::uint32_t splitLink(std::uint32_t place, unsigned half) { return kSplitLink | (2 * place + half); }
+    /// What links to `from` (half 0, hidden or not) links to `to` instead.
     void relink(std::uint32_t number, std::uint32_t from, std::uint32_t to);
+    void showOrHide(std::uint32_t leaf);
 
     struct Vertex {
         glm::vec3 target{0.0f};                                   ///< true position
@@ -96,13 +110,15 @@ private:
     void linkToParents(std::uint32_t number, const DiamondShape& shape);
     void adoptChildren(const SampleGrid& grid, std::uint32_t number, const DiamondShape& shape);
     void merge(std::uint32_t number);
+    Block& blockOf(std::uint32_t number) { return blocks_[number / RoamBounds::kBlock]; }
+    const Block& blockOf(std::uint32_t number) const { return blocks_[number / RoamBounds::kBlock]; }
+    static std::uint16_t bitOf(std::uint32_t number) { return std::uint16_t(1u << number % RoamBounds::kBlock); }
     bool isSplit(std::uint32_t number) const { return diamonds_[number].links != kNone; }
     Links& links(std::uint32_t number) { return links_[diamonds_[number].links]; }
     const Links& links(std::uint32_t number) const { return links_[diamonds_[number].links]; }
     /// At the rim of the square a diamond has one triangle, elsewhere two; splitting it adds as many.
     bool isAtRim(const DiamondShape& shape) const { return !inSquare(shape.corner[1]) || !inSquare(shape.corner[3]); }
     std::uint32_t addVertex(const SampleGrid& grid, glm::ivec2 at);
-    std::uint32_t find(glm::ivec2 centre) const;
     std::uint32_t vertexAt(glm::ivec2 at) const;
     bool inSquare(glm::ivec2 p) const { return p.x >= 0 && p.y >= 0 && p.x <= side_ && p.y <= side_; }
     static unsigned cellBit(int dx, int dy) { return (dx > 0 ? 1u : 0u) | (dy > 0 ? 2u : 0u); }
@@ -111,8 +127,8 @@ private:
     // RoamRefine.cpp: queues
     void prepare(const SampleGrid& grid, const View& view, const LodSettings& settings, bool wasDone);
     void evaluate(std::uint32_t number);
-    void gather(std::uint32_t number);
-    void update();
+    void gather(const SampleGrid& grid, std::size_t block, const BlockEvaluation& found);
+    void update(const SampleGrid& grid);
     void refine(const SampleGrid& grid, std::uint32_t limit);
     void coarsen(std::uint32_t limit);
     bool makeRoom(const Candidate& candidate);
@@ -120,7 +136,7 @@ private:
     std::uint32_t triangleCost(std::uint32_t number) const;
     void enqueue(std::uint32_t number);
     bool isCurrent(const Candidate& c) const { return bounds_.priority(c.diamond) == c.priority; }
-    bool isMergeable(std::uint32_t number) const { return isSplit(number) && links(number).splitChildren == 0; }
+    bool isMergeable(std::uint32_t number) const { return (blockOf(number).mergeable & bitOf(number)) != 0; }
     float splitThreshold() const { return settings_.geomorph ? settings_.pixelError * kMorphStart : settings_.pixelError; }
 
     // RoamEmit.cpp: triangles and morphs
@@ -141,7 +157,7 @@ private:
     int columns_;
     RoamBounds bounds_;  ///< by the number of a diamond, as the next
     std::vector<Diamond> diamonds_;
-    std::vector<std::uint16_t> due_;           ///< by block of bounds_: frame in which it must be evaluated again, modulo 2^16
+    std::vector<Block> blocks_;                ///< by block of bounds_
     std::vector<std::uint64_t> freeDiamonds_;  ///< a bit for each that is free
     std::size_t freeWord_ = 0;                 ///< no word before it has a bit
     std::size_t freeCount_ = 0;

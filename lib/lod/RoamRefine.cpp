@@ -1,5 +1,6 @@
 // The two queues of ROAM: what to split, what to merge, and in which order.
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include <glm/geometric.hpp>
@@ -64,12 +65,13 @@ void RoamMesh::prepare(const SampleGrid& grid, const View& view, const LodSettin
     const float depthAtEye = std::max(0.0f, glm::dot(glm::vec3(w), motion_.eye()) + w.w);
     request_ = {&*space_,   &motion_,       settings.cull, splitThreshold(), settings.pixelError,
                 depthAtEye, depthPerLength, assumedFactor};
-    update();
+    update(grid);
 }
 
 void RoamMesh::evaluate(std::uint32_t number) {
     bounds_.evaluate(number, request_);
-    due_[number / RoamBounds::kBlock] = std::uint16_t(frame_ + 1);
+    blockOf(number).due = std::uint16_t(frame_ + 1);
+    if (blockOf(number).leaf & bitOf(number)) showOrHide(number);
 }
 
 void RoamMesh::enqueue(std::uint32_t number) {
@@ -87,28 +89,36 @@ void RoamMesh::enqueue(std::uint32_t number) {
     }
 }
 
-void RoamMesh::gather(std::uint32_t number) {
-    const float priority = bounds_.priority(number);
-    if (!isSplit(number)) {
-        if (priority > request_.threshold)
-            splitQueue_.push_back({priority, number});
-        else
-            leafError_ = std::max(leafError_, priority);
-    } else if ((priority <= request_.threshold || settings_.triangleBudget > 0) && isMergeable(number)) {
-        mergeQueue_.push_back({priority, number});
-    }
+void RoamMesh::gather(const SampleGrid& grid, std::size_t number, const BlockEvaluation& found) {
+    const Block& block = blocks_[number];
+    const auto forEach = [&](unsigned bits, auto visit) {
+        for (; bits != 0; bits &= bits - 1)
+            visit(std::uint32_t(number * RoamBounds::kBlock) + std::uint32_t(std::countr_zero(bits)));
+    };
+    const unsigned below = ~unsigned(found.above);
+    forEach(block.leaf & found.above, [&](std::uint32_t d) {
+        splitQueue_.push_back({bounds_.priority(d), d});
+        if (const glm::ivec2 vertex = bounds_.centre(d); grid.contains(vertex.x, vertex.y)) grid.prefetch(vertex.x, vertex.y);
+    });
+    forEach(block.mergeable & (settings_.triangleBudget > 0 ? ~0u : below), [this](std::uint32_t d) {
+        mergeQueue_.push_back({bounds_.priority(d), d});
+    });
+    forEach(block.leaf & ~unsigned(block.hidden ^ found.inView), [this](std::uint32_t d) { showOrHide(d); });
+    // Where some are deferred the threshold is all that is known of those below it.
+    const auto rest = std::uint16_t(block.leaf & below & found.inView);
+    if (rest != 0) leafError_ = std::max(leafError_, mayDefer_ ? request_.threshold : bounds_.largestPriority(number, rest));
 }
 
-void RoamMesh::update() {
+void RoamMesh::update(const SampleGrid& grid) {
     const ProfileScope scope("roam: evaluate");
     splitQueue_.clear();
     mergeQueue_.clear();
     leafError_ = 0.0f;
     for (std::size_t block = 0; block < bounds_.blocks(); ++block) {
-        if (mayDefer_ && due_[block] != frame_) continue;
-        due_[block] = std::uint16_t(frame_ + bounds_.evaluateBlock(block, request_));
-        const std::size_t first = block * RoamBounds::kBlock, last = std::min(first + RoamBounds::kBlock, bounds_.size());
-        for (std::size_t number = first; number < last; ++number) gather(std::uint32_t(number));
+        if (mayDefer_ && blocks_[block].due != frame_) continue;
+        const BlockEvaluation found = bounds_.evaluateBlock(block, request_);
+        blocks_[block].due = std::uint16_t(frame_ + found.frames);
+        gather(grid, block, found);
     }
     std::make_heap(splitQueue_.begin(), splitQueue_.end(), kHighestFirst);
     std::make_heap(mergeQueue_.begin(), mergeQueue_.end(), kLowestFirst);
@@ -122,7 +132,7 @@ std::uint32_t RoamMesh::triangleCost(std::uint32_t number) const {
     for (std::size_t half = 0; half < 2; ++half) {
         const glm::ivec2 apex = shape.corner[half ? 3 : 1];
         if (d.parent[half] != kNone || !inSquare(apex)) continue;
-        const std::uint32_t parent = find(apex);
+        const std::uint32_t parent = table_.find(apex);
         // A parent without a record needs up to two more splits a level above it.
         cost += parent != kNone ? triangleCost(parent) : std::uint32_t(4 * shape.level(model_.errors->exponent()));
     }
