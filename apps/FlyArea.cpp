@@ -21,7 +21,7 @@ namespace app {
 
 namespace {
 
-// Of the status line after the last motion, so that its last figures are those of the picture at rest.
+// How long the status line follows the last motion or key, whether the picture changes or not.
 constexpr double restMs = 600.0;
 constexpr double textEveryMs = 250.0;
 constexpr int tickMs = 8;
@@ -59,6 +59,10 @@ void FlyArea::play(Animation animation) {
 
 void FlyArea::wake() {
     activeUntilMs_ = nowMs() + restMs;
+    runTimer();
+}
+
+void FlyArea::runTimer() {
     if (timer_.isActive()) return;
     lastTickMs_ = nowMs();
     timer_.start(tickMs);
@@ -77,11 +81,12 @@ void FlyArea::tick() {
     resized_ = false;
     if (now - textMs_ > textEveryMs) {
         textMs_ = now;
+        textDue_ = false;
         const std::string text = status();
         statusLine_.setText(text);
         setTitle(("SoTerrainTest: " + text).c_str());
     }
-    if (!play_ && now > activeUntilMs_) timer_.stop();
+    if (!play_ && !textDue_ && now > activeUntilMs_) timer_.stop();
 }
 
 // The animation's clock starts with its first frame, after the window and the first upload.
@@ -131,6 +136,7 @@ void FlyArea::takeOver() {
 void FlyArea::actualRedraw() {
     const double start = nowMs();
     SoQtRenderArea::actualRedraw();
+    noteScene();
     if (logging_ || replayProfile_) glFinish();
     const double end = nowMs();
     if (renderer_.empty()) {
@@ -146,8 +152,19 @@ void FlyArea::actualRedraw() {
     logFrame(end - start);
 }
 
+// A mesh may converge long after the last motion, so every frame of a scene that changed calls for a new text. The frame that
+// the text itself causes shows the same scene: the text comes to rest with the picture.
+void FlyArea::noteScene() {
+    const SbUniqueId scene = scene_.root()->getNodeId();
+    if (scene == drawnScene_) return;
+    drawnScene_ = scene;
+    textDue_ = true;
+    runTimer();
+}
+
 void FlyArea::sizeChanged(const SbVec2s& size) {
     SoQtRenderArea::sizeChanged(size);
+    drawnScene_ = 0;
     resized_ = true;
     wake();
 }

@@ -47,6 +47,8 @@ private:
     void tick();
     void advance(double now);
     void wake();
+    void runTimer();
+    void noteScene();
     void play(Animation animation);
     void endOfAnimation();
     bool steer(const QKeyEvent& event, bool press);
@@ -79,6 +81,8 @@ private:
     double lastTickMs_;
     double activeUntilMs_ = 0.0;
     double textMs_ = 0.0;
+    bool textDue_ = false;       ///< the scene changed after the text was set
+    SbUniqueId drawnScene_ = 0;  ///< node id of the scene in the latest frame, 0 if it must be drawn anew
     double frameMs_ = 0.0;     ///< smoothed
     double intervalMs_ = 0.0;  ///< smoothed, between frames that follow each other closely
     double lastRedrawMs_ = 0.0;

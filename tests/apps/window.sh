@@ -100,6 +100,43 @@ title | grep -q 'of 2.00 px' || fail "Enter does not go back: $(title)"
 xdotool key Escape
 wait $program || fail "exit status $? of roam"
 
+# However long a mesh takes to converge, the title ends with the figures of the last frame, and then nothing is drawn any more.
+LC_ALL=C awk 'BEGIN { srand(1); for (i = 0; i < 129 * 129; ++i) printf "%c", 65 + int(60 * rand()) }' >"$SCRATCH/rough.raw"
+cat >"$SCRATCH/slow.iv" <<'SCENE'
+#Inventor V2.1 ascii
+Separator {
+    SoHeightMap { fields [ SFString filename ] filename "rough.raw" }
+    SoROAMTerrain { fields [ SFFloat pixelError, SFInt32 operationCount ] pixelError 50 operationCount 100 }
+}
+SCENE
+"$TEST" --scene "$SCRATCH/slow.iv" -p "$SCRATCH/slow.csv" >/dev/null 2>"$SCRATCH/err" &
+program=$!
+for _ in $(seq 100); do
+    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: .*of 50.00 px' 2>/dev/null | tail -1)
+    [ -n "$window" ] && break
+    sleep 0.1
+done
+xdotool windowfocus "$window" mousemove 500 400
+sleep 1
+xdotool key Return
+sleep 1
+last=
+same=0
+for _ in $(seq 120); do
+    now=$(title)
+    [ "$now" = "$last" ] && same=$((same + 1)) || same=0
+    [ $same = 6 ] && break
+    last=$now
+    sleep 0.5
+done
+xdotool key Escape
+wait $program || fail "exit status $? of a slow mesh"
+drawn=$(tail -1 "$SCRATCH/slow.csv" | LC_ALL=C awk -F, '{ printf "%d triangles   error %.2f of 0.00 px", $7, $9 }')
+[[ $now == *"$drawn"* ]] || fail "the last frame has $drawn, the title says: $now"
+[[ $drawn == *'error 0.00 of'* ]] || fail "the mesh did not converge: $drawn"
+rested=$(cut -d, -f7,9 "$SCRATCH/slow.csv" | uniq -c | awk 'END { print $1 }')
+[ "$rested" -le 6 ] || fail "a picture at rest was drawn $rested times"
+
 # R records, P replays once and leaves a profile.
 program_path=$(realpath "$TEST")
 (cd "$SCRATCH" && exec "$program_path" -h map.raw -a roam >/dev/null 2>replay.err) &
