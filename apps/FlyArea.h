@@ -83,8 +83,8 @@ private:
     double textMs_ = 0.0;
     bool textDue_ = false;       ///< the scene changed after the text was set
     SbUniqueId drawnScene_ = 0;  ///< node id of the scene in the latest frame, 0 if it must be drawn anew
-    double frameMs_ = 0.0;     ///< smoothed
-    double intervalMs_ = 0.0;  ///< smoothed, between frames that follow each other closely
+    double frameMs_ = 0.0;       ///< smoothed
+    double intervalMs_ = 0.0;    ///< smoothed, between frames that follow each other closely
     double lastRedrawMs_ = 0.0;
     double lastDueMs_ = 0.0;            ///< when the latest frame of the animation was asked for
     std::optional<float> formerError_;  ///< pixel error before full detail
