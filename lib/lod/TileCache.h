@@ -92,7 +92,6 @@ public:
     /// Takes in what was built, evicts, and lets workers start on this frame's requests instead of the last one's.
     void endFrame() {
         takeIn(jobs_->takeFinished());
-        evictDownTo(budget_);
         schedule();
     }
 
@@ -213,7 +212,7 @@ private:
         return open;
     }
 
-    /// Publishes the requests whose tiles could be kept, and makes room for the first of them.
+    /// Publishes the requests whose tiles could be kept, and evicts down to the budget less the room that the first of them need.
     void schedule() {
         const auto load = jobs_->load();
         const std::size_t startable = kJobsPerWorker * runner_->workers();
