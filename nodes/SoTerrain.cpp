@@ -1,6 +1,7 @@
 #include <SoTerrain/SoTerrain.h>
 
 #include <SoTerrain/SoBruteForceTerrain.h>
+#include <SoTerrain/SoGeoMipmapTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoROAMTerrain.h>
@@ -18,6 +19,7 @@ void SoTerrain::init()
     SoHeightMap::initClass();
     SoTerrainShape::initClass();
     SoBruteForceTerrain::initClass();
+    SoGeoMipmapTerrain::initClass();
     SoROAMTerrain::initClass();
 }
 

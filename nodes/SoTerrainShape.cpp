@@ -169,7 +169,21 @@ void SoTerrainShape::warnOnce(const char * text) const
     if (pimpl->warned.insert(text).second) SoDebugError::postWarning(this->getTypeId().getName().getString(), "%s", text);
 }
 
+int SoTerrainShape::validTileSize(int wanted, int least, int most) const
+{
+    const int valid = 1 << std::lround(std::log2(double(std::clamp(wanted, least, most))));
+    if (valid != wanted)
+        warnOnce(("tileSize: expected a power of two from " + std::to_string(least) + " to " + std::to_string(most) + ", found " +
+                  std::to_string(wanted) + "; " + std::to_string(valid) + " is taken").c_str());
+    return valid;
+}
+
 void SoTerrainShape::getSettings(terrain::LodSettings &) const {}
+
+void SoTerrainShape::discardMeshes()
+{
+    ++pimpl->meshVersion;
+}
 
 bool SoTerrainShape::needsErrors() const
 {
@@ -255,10 +269,13 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.buildMilliseconds = data->buildMilliseconds;
 
     TerrainView & view = views.find(ViewKey(action), frame);
-    if (view.boxes != data->model.boxes) {
+    if (view.boxes != data->model.boxes || view.meshVersion != meshVersion) {
+        const Clock::time_point start = Clock::now();
         view.boxes = data->model.boxes;
+        view.meshVersion = meshVersion;
         view.algorithm = master->createAlgorithm(data->model, data->grid);
         view.hasMesh = false;
+        statistics.buildMilliseconds += millisecondsSince(start);
     }
     SoMaterialBundle materials(action);
     materials.sendFirst();

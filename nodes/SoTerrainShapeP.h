@@ -31,6 +31,7 @@ public:
     SoTerrainShape * master;
     GridCache grids;
     TerrainViews views;
+    std::uint64_t meshVersion = 0;  ///< meshes of an earlier one are replaced
     SoTerrainStatistics statistics;
     std::set<std::string> warned;
     SoOneShotSensor again;  ///< asks for another frame while a mesh has not converged

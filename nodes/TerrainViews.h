@@ -28,6 +28,7 @@ struct ViewKey {
 struct TerrainView {
     ViewKey key;
     std::shared_ptr<const terrain::BoxPyramid> boxes;  ///< names the data that the mesh belongs to
+    std::uint64_t meshVersion = 0;                     ///< SoTerrainShape::Private::meshVersion when it was made
     std::unique_ptr<terrain::LodAlgorithm> algorithm;
     terrain::TerrainRenderer renderer;
     terrain::SelectionReport report;  ///< of the latest selection

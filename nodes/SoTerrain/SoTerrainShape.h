@@ -61,6 +61,10 @@ protected:
     virtual void getSettings(terrain::LodSettings & settings) const;
     /// Whether the algorithm needs the error hierarchy.
     virtual bool needsErrors() const;
+    /// To be called when meshes would now be created otherwise: every view gets a new algorithm when it is next drawn.
+    void discardMeshes();
+    /// The power of two from `least` to `most` nearest to what a field asks for, after a warning where that is another number.
+    int validTileSize(int wanted, int least, int most) const;
     /// Posts a warning about this node, once for each text.
     void warnOnce(const char * text) const;
 

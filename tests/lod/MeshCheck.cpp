@@ -41,8 +41,10 @@ bool isValidCell(const SampleGrid& grid, int column, int row)
     return column >= 0 && row >= 0 && column < grid.columns() - 1 && row < grid.rows() - 1 && !isCellHole(grid, column, row);
 }
 
-/// Middles of the quarters of a cell (bottom, right, top, left), in quarters of a cell.
-constexpr glm::ivec2 kQuarter[4] = {{2, 1}, {3, 2}, {2, 3}, {1, 2}};
+/// Points in the middles of the quarters of a cell (bottom, right, top, left), in parts of a cell. Their number is prime and the points are a
+/// little off, so that they lie on no line between samples.
+constexpr int kParts = 65537;
+constexpr glm::ivec2 kQuarter[4] = {{32771, 16411}, {49139, 32749}, {32717, 49193}, {16349, 32801}};
 
 std::size_t quarterIndex(const SampleGrid& grid, int column, int row, int quarter)
 {
@@ -60,10 +62,10 @@ std::vector<int> countCoverage(const SampleGrid& grid, const std::vector<GridTri
         for (int row = bottom; row < top; ++row)
             for (int column = left; column < right; ++column)
                 for (int quarter = 0; quarter < 4; ++quarter) {
-                    const glm::ivec2 p = glm::ivec2(column, row) * 4 + kQuarter[quarter];
+                    const glm::ivec2 p = glm::ivec2(column, row) * kParts + kQuarter[quarter];
                     bool inside = true;
                     for (std::size_t i = 0; i < 3 && inside; ++i) {
-                        const glm::ivec2 from = t.corner[i] * 4, to = t.corner[(i + 1) % 3] * 4;
+                        const glm::ivec2 from = t.corner[i] * kParts, to = t.corner[(i + 1) % 3] * kParts;
                         inside = (cross(to - from, p - from) > 0) != turned;
                     }
                     if (inside) ++count[quarterIndex(grid, column, row, quarter)];

@@ -26,7 +26,8 @@ std::vector<GridTriangle> trianglesOf(const SampleGrid& grid, const DrawList& li
 /// The checks below return what is wrong, in words; nothing when all is well.
 ///
 /// All edges of the triangles of a diamond mesh run along rows, columns or diagonals of the grid, so that a cell falls into four
-/// quarters, between its diagonals, each of which lies wholly in a triangle or wholly out of it.
+/// quarters, between its diagonals, each of which lies wholly in a triangle or wholly out of it. Of other meshes one point of each
+/// quarter is looked at, which lies on no edge; where no vertex lies within an edge and each edge has its two sides, that is enough.
 
 /// Triangles have an area, stand on samples that exist, turn the right way, share each edge with at most one other, and no vertex
 /// lies within the edge of another triangle.

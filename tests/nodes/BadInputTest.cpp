@@ -24,6 +24,7 @@
 #include <Inventor/nodes/SoNormal.h>
 #include <Inventor/nodes/SoTextureCoordinate2.h>
 
+#include <SoTerrain/SoGeoMipmapTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoROAMTerrain.h>
 
@@ -279,5 +280,38 @@ TEST(BadRoamInput, NegativeCountsAreTold) {
         }
 }
 
+TEST(BadGeoMipmapInput, AnImpossibleTileSizeIsToldOnceAndTheNearestIsTaken) {
+    const Surface surface = surfaceOf(fractalMap(300, 300, 3.0));
+    Ref<SoSeparator> root = sceneOf(Kind::GeoMipmap, surface);
+    auto* node = static_cast<SoGeoMipmapTerrain*>(terrainIn(root.get()));
+    Stage stage;
+    for (const auto& [wanted, taken] : {std::pair{0, 2}, {-7, 2}, {INT_MIN, 2}, {3, 4}, {24, 32}, {1000, 128}, {INT_MAX, 128}}) {
+        node->tileSize = taken;
+        stage.render(root.get());
+        const std::uint32_t triangles = node->getStatistics().triangles;
+        Messages messages;
+        node->tileSize = wanted;
+        stage.render(root.get());
+        stage.render(root.get());
+        ASSERT_EQ(messages.all().size(), 1u) << wanted << ": " << messages.text();
+        EXPECT_NE(messages.text().find(std::to_string(wanted)), std::string::npos) << messages.text();
+        EXPECT_EQ(node->getStatistics().triangles, triangles) << wanted;
+    }
+}
+
+TEST(GeoMipmapTiles, OfEachSizeAreDrawnAtOnceWhenTheFieldChanges) {
+    Ref<SoSeparator> root = sceneOf(Kind::GeoMipmap, surfaceOf(fractalMap(257, 257, 20.0)), {}, unlitTexture);
+    auto* node = static_cast<SoGeoMipmapTerrain*>(terrainIn(root.get()));
+    Stage stage;
+    std::uint32_t before = 0;
+    for (const int size : {4, 16, 64}) {
+        node->tileSize = size;
+        stage.render(root.get());
+        EXPECT_NE(node->getStatistics().triangles, before);
+        EXPECT_LE(node->getStatistics().errorPixels, 2.0);
+        before = node->getStatistics().triangles;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(, BadInput, testing::ValuesIn(kOurKinds),
-                         [](const auto& info) { return info.param == Kind::Roam ? std::string("OnRoam") : std::string("OnBruteForce"); });
+                         [](const auto& info) { return "On" + identifierOf(info.param); });

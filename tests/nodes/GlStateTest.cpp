@@ -130,7 +130,7 @@ TEST_P(GlState, LetsACubeAfterTheNodeLookAsItDoesAlone) {
             return stage.render(root.get());
         };
         const Image alone = cubeAfter(false), after = cubeAfter(true);
-        savePicture(std::string("cube_after_") + (GetParam() == Kind::Roam ? "roam" : "bruteforce") + (coloured ? "_coloured" : ""), {alone, after});
+        savePicture("cube_after_" + identifierOf(GetParam()) + (coloured ? "_coloured" : ""), {alone, after});
         const Difference found = compare(alone, after);
         EXPECT_EQ(found.onlyFirst, 0);
         EXPECT_GT(found.covered, 500);
@@ -151,7 +151,7 @@ TEST_P(GlState, CountsTheTrianglesThatGlGets) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, GlState, testing::ValuesIn(kOurKinds),
-                         [](const auto& info) { return info.param == Kind::Roam ? std::string("OfRoam") : std::string("OfBruteForce"); });
+                         [](const auto& info) { return "Of" + identifierOf(info.param); });
 
 TEST(TriangleCount, IsAHardBudget) {
     const Surface surface = surfaceOf(fractalMap(257, 257, 60.0));

@@ -206,7 +206,7 @@ TEST(HeightMaps, LookLikeTheirSamples) {
         group->addChild(source.terrain);
         const auto picture = stage.render(root.get());
         expectAlike(reference, picture, 2.0, nameOf(kind));
-        savePicture(std::string("height_map_") + (kind == Kind::Roam ? "roam" : "bruteforce"), {reference, picture});
+        savePicture("height_map_" + identifierOf(kind), {reference, picture});
     }
 }
 

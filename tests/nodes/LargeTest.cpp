@@ -61,7 +61,8 @@ TEST(LargeMaps, OfSixteenMillionSamplesLookLikeTheyAre) {
                     statistics.memoryBytes >> 20, statistics.bufferBytes >> 20);
         return picture;
     };
-    const auto roam = draw(Kind::Roam), bruteForce = draw(Kind::BruteForce);
-    savePicture("size_4097x4097", {bruteForce, roam});
-    expectAlike(bruteForce, roam, 3.0);
+    const auto roam = draw(Kind::Roam), geoMipmap = draw(Kind::GeoMipmap), bruteForce = draw(Kind::BruteForce);
+    savePicture("size_4097x4097", {bruteForce, roam, geoMipmap});
+    expectAlike(bruteForce, roam, 3.0, "ROAM");
+    expectAlike(bruteForce, geoMipmap, 3.0, "Geo Mip-Mapping");
 }

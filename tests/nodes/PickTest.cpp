@@ -293,4 +293,4 @@ TEST(HeightAt, LeavesANodeThatNobodyOwnsAlive) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, Picks, testing::ValuesIn(kOurKinds),
-                         [](const auto& info) { return info.param == Kind::Roam ? std::string("OnRoam") : std::string("OnBruteForce"); });
+                         [](const auto& info) { return "On" + identifierOf(info.param); });

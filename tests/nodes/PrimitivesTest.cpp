@@ -154,7 +154,7 @@ TEST_P(Primitives, FollowAnEditOfTheCoordinates) {
     const auto after = stage.render(root.get());
     auto* camera = static_cast<SoCamera*>(static_cast<SoNode*>(root->getChild(0)->copy()));
     const auto fresh = stage.render(sceneOf(GetParam(), surface, {.pixelError = 0.0f}, unlitTexture, camera).get());
-    savePicture(std::string("edited_") + (GetParam() == Kind::Roam ? "roam" : "bruteforce"), {before, after, fresh});
+    savePicture("edited_" + identifierOf(GetParam()), {before, after, fresh});
     EXPECT_EQ(after.pixels, fresh.pixels);
     EXPECT_NE(after.pixels, before.pixels);
     expectBox(boxOf(root->getChild(2)), surface.box());
@@ -186,4 +186,4 @@ TEST_P(Primitives, WithoutSizesMakeASquare) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, Primitives, testing::ValuesIn(kOurKinds),
-                         [](const auto& info) { return info.param == Kind::Roam ? std::string("OfRoam") : std::string("OfBruteForce"); });
+                         [](const auto& info) { return "Of" + identifierOf(info.param); });

@@ -127,7 +127,7 @@ TEST(Textures, FollowACoordinateFunction) {
     // Coordinates of the reference come after the function, so both get it by a plane in front of the shape alone.
     Stage stage;
     std::vector<terrain::Image> pictures;
-    for (const Kind kind : {Kind::Reference, Kind::BruteForce, Kind::Roam}) {
+    for (const Kind kind : {Kind::Reference, Kind::BruteForce, Kind::Roam, Kind::GeoMipmap}) {
         const auto root = sceneOf(kind, hills(), {.pixelError = 0.5f}, unlitTexture);
         auto* dressed = static_cast<SoSeparator*>(root->getChild(2));
         auto* group = static_cast<SoSeparator*>(dressed->getChild(dressed->getNumChildren() - 1));
@@ -140,6 +140,7 @@ TEST(Textures, FollowACoordinateFunction) {
     savePicture("texture_function", pictures);
     expectAlike(pictures[0], pictures[1], 0.3, "brute force");
     expectAlike(pictures[0], pictures[2], 3.0, "ROAM");
+    expectAlike(pictures[0], pictures[3], 3.0, "Geo Mip-Mapping");
 }
 
 TEST(Lights, FogHidesWhatIsFar) {
@@ -242,7 +243,7 @@ TEST(ShapeHints, ThatGiveAnOrderLightBothSides) {
             for (const auto ordering : kOrderings) {
                 const auto found = hinted(stage, kind, hills(), ordering, SoShapeHints::UNKNOWN_SHAPE_TYPE, side);
                 expectAlike(reference, found, 6.0, nameOf(kind));
-                if (side < 0.0f) savePicture(std::string("two_sided_") + (kind == Kind::Roam ? "roam" : "bruteforce"), {reference, found});
+                if (side < 0.0f) savePicture("two_sided_" + identifierOf(kind), {reference, found});
             }
     }
 }

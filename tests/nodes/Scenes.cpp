@@ -17,6 +17,7 @@
 #include <Inventor/nodes/SoTextureUnit.h>
 
 #include <SoTerrain/SoBruteForceTerrain.h>
+#include <SoTerrain/SoGeoMipmapTerrain.h>
 #include <SoTerrain/SoROAMTerrain.h>
 
 #include "height/FractalSource.h"
@@ -31,8 +32,17 @@ const char* nameOf(Kind kind) {
     case Kind::QuadMesh: return "quad mesh";
     case Kind::BruteForce: return "brute force";
     case Kind::Roam: return "ROAM";
+    case Kind::GeoMipmap: return "Geo Mip-Mapping";
     }
     return "";
+}
+
+std::string identifierOf(Kind kind) {
+    switch (kind) {
+    case Kind::Roam: return "Roam";
+    case Kind::GeoMipmap: return "GeoMipmap";
+    default: return "BruteForce";
+    }
 }
 
 bool Surface::isHole(int column, int row) const {
@@ -103,8 +113,20 @@ Surface surfaceOf(const HeightMap& map, const std::function<SbVec3f(int, int, fl
     return surface;
 }
 
+namespace {
+
+SoTerrainShape* newNode(Kind kind) {
+    switch (kind) {
+    case Kind::Roam: return new SoROAMTerrain;
+    case Kind::GeoMipmap: return new SoGeoMipmapTerrain;
+    default: return new SoBruteForceTerrain;
+    }
+}
+
+}  // namespace
+
 SoTerrainShape* nodeOf(Kind kind, int columns, int rows, float pixelError) {
-    SoTerrainShape* node = kind == Kind::Roam ? static_cast<SoTerrainShape*>(new SoROAMTerrain) : new SoBruteForceTerrain;
+    SoTerrainShape* node = newNode(kind);
     node->verticesPerRow = columns;
     node->verticesPerColumn = rows;
     node->pixelError = pixelError;
@@ -158,7 +180,7 @@ SoSeparator* shapeOf(Kind kind, const Surface& surface, const ShapeOptions& opti
         coordinates->point.finishEditing();
     }
     group->addChild(coordinates);
-    const bool isOurs = kind == Kind::BruteForce || kind == Kind::Roam;
+    const bool isOurs = kind != Kind::Reference && kind != Kind::QuadMesh;
     if (options.normals || !isOurs) {
         auto* normals = new SoNormal;
         normals->vector.setValues(0, int(surface.normals.size()), surface.normals.data());
@@ -247,14 +269,14 @@ Ref<SoSeparator> sceneOf(Kind kind, const Surface& surface, const ShapeOptions& 
 }
 
 void expectLikeReference(const std::string& name, const Surface& surface, const ShapeOptions& options, const Dressing& dress,
-                         double bruteForceMean, double roamMean, const std::function<SoCamera*()>& camera, Kind reference) {
+                         double bruteForceMean, double lodMean, const std::function<SoCamera*()>& camera, Kind reference) {
     Stage stage;
-    std::vector<terrain::Image> pictures;
-    for (const Kind kind : {reference, Kind::BruteForce, Kind::Roam})
-        pictures.push_back(stage.render(sceneOf(kind, surface, options, dress, camera ? camera() : nullptr).get()));
+    const auto draw = [&](Kind kind) { return stage.render(sceneOf(kind, surface, options, dress, camera ? camera() : nullptr).get()); };
+    std::vector<terrain::Image> pictures{draw(reference)};
+    for (const Kind kind : kOurKinds) pictures.push_back(draw(kind));
     savePicture(name, pictures);
-    expectAlike(pictures[0], pictures[1], bruteForceMean, "brute force");
-    expectAlike(pictures[0], pictures[2], roamMean, "ROAM");
+    for (std::size_t i = 0; i < std::size(kOurKinds); ++i)
+        expectAlike(pictures[0], pictures[i + 1], kOurKinds[i] == Kind::BruteForce ? bruteForceMean : lodMean, nameOf(kOurKinds[i]));
 }
 
 }  // namespace test

@@ -4,6 +4,7 @@
 #include "Harness.h"
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include <Inventor/SbBox3f.h>
@@ -18,9 +19,13 @@
 namespace test {
 
 /// What draws a grid: Coin's SoIndexedFaceSet of all its triangles, Coin's SoQuadMesh, or one of our nodes.
-enum class Kind { Reference, QuadMesh, BruteForce, Roam };
-inline constexpr Kind kOurKinds[] = {Kind::BruteForce, Kind::Roam};
+enum class Kind { Reference, QuadMesh, BruteForce, Roam, GeoMipmap };
+inline constexpr Kind kOurKinds[] = {Kind::BruteForce, Kind::Roam, Kind::GeoMipmap};
+/// Those of ours with level of detail.
+inline constexpr Kind kLodKinds[] = {Kind::Roam, Kind::GeoMipmap};
 const char* nameOf(Kind kind);
+/// The same for names of tests and pictures.
+std::string identifierOf(Kind kind);
 
 /// A grid of points, row after row, with a normal each. A point that is not finite is a hole.
 struct Surface {
@@ -72,9 +77,9 @@ void unlitTexture(SoSeparator* group);
 /// Camera, light and shape: what most tests draw.
 Ref<SoSeparator> sceneOf(Kind kind, const Surface& surface, const ShapeOptions& options = {}, const Dressing& dress = {}, SoCamera* camera = nullptr);
 
-/// Draws the scene with Coin's shape (`reference`) and with ours, compares, and saves the pictures under `name`. `roamMean` is for ROAM at the
-/// option's pixelError.
+/// Draws the scene with Coin's shape (`reference`) and with ours, compares, and saves the pictures under `name`. `lodMean` is for nodes with level
+/// of detail at the option's pixelError.
 void expectLikeReference(const std::string& name, const Surface& surface, const ShapeOptions& options, const Dressing& dress,
-                         double bruteForceMean, double roamMean, const std::function<SoCamera*()>& camera = {}, Kind reference = Kind::Reference);
+                         double bruteForceMean, double lodMean, const std::function<SoCamera*()>& camera = {}, Kind reference = Kind::Reference);
 
 }  // namespace test

@@ -32,13 +32,17 @@ TEST_P(GridSizes, LookLikeCoinsOwnShape) {
         return stage.render(sceneOf(kind, surface, options, dress, camera()).get());
     };
     const auto lit = draw(Kind::Reference, {}, {}), textured = draw(Kind::Reference, {}, unlitTexture);
-    const auto bruteForce = draw(Kind::BruteForce, {}, {}), full = draw(Kind::Roam, {.pixelError = 0.0f}, {});
-    const auto roam = draw(Kind::Roam, {}, unlitTexture);
-    savePicture(std::string("size_") + name, {lit, bruteForce, full, textured, roam});
+    const auto bruteForce = draw(Kind::BruteForce, {}, {});
     expectAlike(lit, bruteForce, 0.1, "brute force");
-    // Bisection cuts every other cell along the other diagonal, the only one of 2 x 2 samples as well.
-    expectAlike(lit, full, 2.0, "ROAM in full detail");
-    expectAlike(textured, roam, columns == 2 ? 8.0 : 2.0, "ROAM");
+    std::vector<terrain::Image> pictures{lit, textured, bruteForce};
+    for (const Kind kind : kLodKinds) {
+        pictures.push_back(draw(kind, {.pixelError = 0.0f}, {}));
+        // Bisection cuts every other cell along the other diagonal, the only one of 2 x 2 samples as well.
+        expectAlike(lit, pictures.back(), 2.0, (std::string(nameOf(kind)) + " in full detail").c_str());
+        pictures.push_back(draw(kind, {}, unlitTexture));
+        expectAlike(textured, pictures.back(), columns == 2 ? 8.0 : 2.0, nameOf(kind));
+    }
+    savePicture(std::string("size_") + name, pictures);
 }
 
 INSTANTIATE_TEST_SUITE_P(, GridSizes,

@@ -105,22 +105,24 @@ TEST(DrawStyles, LinesAreTheEdgesOfTheTriangles) {
     const Surface surface = hills();
     Stage stage;
     const auto draw = [&](Kind kind) { return stage.render(sceneOf(kind, surface, {.pixelError = 4.0f}, [](SoSeparator* group) { addStyle(group, SoDrawStyle::LINES); }).get()); };
-    const auto reference = draw(Kind::Reference), bruteForce = draw(Kind::BruteForce), roam = draw(Kind::Roam);
-    savePicture("style_lines", {reference, bruteForce, roam});
+    const auto reference = draw(Kind::Reference), bruteForce = draw(Kind::BruteForce), roam = draw(Kind::Roam), geoMipmap = draw(Kind::GeoMipmap);
+    savePicture("style_lines", {reference, bruteForce, roam, geoMipmap});
     EXPECT_NEAR(coveredPixels(bruteForce), coveredPixels(reference), 0.01 * coveredPixels(reference));
     EXPECT_LT(compare(reference, bruteForce).mean, 2.0);
     // Fewer triangles leave the background open between their edges.
-    EXPECT_LT(coveredPixels(roam), coveredPixels(reference) / 2);
-    EXPECT_GT(coveredPixels(roam), 1000);
+    for (const terrain::Image& picture : {roam, geoMipmap}) {
+        EXPECT_LT(coveredPixels(picture), coveredPixels(reference) / 2);
+        EXPECT_GT(coveredPixels(picture), 1000);
+    }
 }
 
 TEST(DrawStyles, PointsAreTheSamples) {
     const Surface surface = hills();
     Stage stage;
     const auto draw = [&](Kind kind) { return stage.render(sceneOf(kind, surface, {.pixelError = 0.0f}, [](SoSeparator* group) { addStyle(group, SoDrawStyle::POINTS); }).get()); };
-    const auto reference = draw(Kind::Reference), bruteForce = draw(Kind::BruteForce), roam = draw(Kind::Roam);
-    savePicture("style_points", {reference, bruteForce, roam});
-    for (const auto& [picture, name] : {std::pair{bruteForce, "brute force"}, {roam, "ROAM"}}) {
+    const auto reference = draw(Kind::Reference), bruteForce = draw(Kind::BruteForce), roam = draw(Kind::Roam), geoMipmap = draw(Kind::GeoMipmap);
+    savePicture("style_points", {reference, bruteForce, roam, geoMipmap});
+    for (const auto& [picture, name] : {std::pair{bruteForce, "brute force"}, {roam, "ROAM"}, {geoMipmap, "Geo Mip-Mapping"}}) {
         const Difference found = compare(reference, picture, 0);
         EXPECT_LE(found.onlyFirst + found.onlySecond, coveredPixels(reference) / 100) << name;
         EXPECT_LT(found.mean, 2.0) << name;

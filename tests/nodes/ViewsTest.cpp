@@ -82,10 +82,11 @@ TEST(Scenes, WithTwoNodesShowBoth) {
     };
     Stage stage;
     std::vector<Image> pictures;
-    for (const Kind kind : {Kind::Reference, Kind::BruteForce, Kind::Roam}) pictures.push_back(stage.render(sceneOf(kind, ground(), {}, dress(kind)).get()));
+    for (const Kind kind : {Kind::Reference, Kind::BruteForce, Kind::Roam, Kind::GeoMipmap}) pictures.push_back(stage.render(sceneOf(kind, ground(), {}, dress(kind)).get()));
     savePicture("two_nodes", pictures);
     expectAlike(pictures[0], pictures[1], 0.3, "brute force");
     expectAlike(pictures[0], pictures[2], 4.0, "ROAM");
+    expectAlike(pictures[0], pictures[3], 4.0, "Geo Mip-Mapping");
 }
 
 TEST(Scenes, WithBothKindsOfNodeOnOneSetOfCoordinatesAgree) {
@@ -101,7 +102,7 @@ TEST(Scenes, WithBothKindsOfNodeOnOneSetOfCoordinatesAgree) {
 TEST(Scenes, WithOneNodeUnderTwoTransformsShowItTwice) {
     Stage stage;
     std::vector<Image> pictures;
-    for (const Kind kind : {Kind::Reference, Kind::BruteForce, Kind::Roam}) {
+    for (const Kind kind : {Kind::Reference, Kind::BruteForce, Kind::Roam, Kind::GeoMipmap}) {
         const auto shared = texturedTerrain(kind, ground());
         Ref<SoSeparator> root(new SoSeparator);
         root->addChild(cameraAt(SbVec3f(0.0f, -110.0f, 90.0f), SbVec3f(80.0f, 60.0f, 0.0f), 1.0f, 600.0f));
@@ -117,6 +118,7 @@ TEST(Scenes, WithOneNodeUnderTwoTransformsShowItTwice) {
     savePicture("two_transforms", pictures);
     expectAlike(pictures[0], pictures[1], 0.3, "brute force");
     expectAlike(pictures[0], pictures[2], 5.0, "ROAM");
+    expectAlike(pictures[0], pictures[3], 5.0, "Geo Mip-Mapping");
 }
 
 class Views : public testing::TestWithParam<Kind> {};
@@ -140,7 +142,7 @@ TEST_P(Views, OfOneNodeInOneFrameEachLookAsTheyDoAlone) {
         expectAlike(half(picture, false), first, 0.05, "left");
         expectAlike(half(picture, true), second, 0.05, "right");
     }
-    savePicture(GetParam() == Kind::Roam ? "two_views_roam" : "two_views_bruteforce", {picture, first, second});
+    savePicture("two_views_" + identifierOf(GetParam()), {picture, first, second});
 }
 
 TEST_P(Views, OfTwoCamerasInOneSceneLookLikeCoinsOwnShape) {
@@ -166,7 +168,7 @@ TEST_P(Views, OfManySizesOfTheViewportLookLikeCoinsOwnShape) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, Views, testing::ValuesIn(kOurKinds),
-                         [](const auto& info) { return info.param == Kind::Roam ? std::string("Roam") : std::string("BruteForce"); });
+                         [](const auto& info) { return identifierOf(info.param); });
 
 TEST(Freeze, KeepsTheMeshWhileTheCameraMoves) {
     const auto terrain = texturedTerrain(Kind::Roam, ground());

@@ -1,0 +1,90 @@
+// Geo Mip-Mapping: one view's choice of a level for each block.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/View.h"
+#include "height/SampleGrid.h"
+#include "lod/GeoMipmapErrors.h"
+#include "lod/GeoMipmapVertices.h"
+#include "lod/LodAlgorithm.h"
+
+namespace terrain {
+
+/// Geometrical mip-mapping (de Boer: "Fast Terrain Rendering Using Geometrical MipMapping", 2000): each block is drawn at the
+/// coarsest of its levels whose error on screen is within pixelError. Errors are exact (GeoMipmapErrors.h), so that is a promise.
+/// Neighbours of any difference of level meet in the vertices of the coarser one (GeoMipmapShape.h); where the triangles that this
+/// takes would have too large an error, the coarser one is refined.
+///
+/// Geomorph (de Boer's trilinear mip-mapping). A block's detail is its level and, behind the point, how far it has come to the next
+/// coarser one: nothing where the error of that one is pixelError, all the way where it is `kMorphStart` pixelError. Drawn is
+/// the average, over x in [0, 1], of the meshes whose blocks have the levels floor(detail + x). All of these are made of edges of
+/// the finest, because neighbours differ by at most one level; and as each of them keeps the error within pixelError, their average
+/// does too. Nothing moves at a switch of levels. Blocks at the far borders that are not of full size switch without sliding.
+///
+/// `triangleBudget` and `operationLimit` are not used. The mesh keeps no pointer to samples.
+class GeoMipmapMesh : public LodAlgorithm {
+public:
+    static constexpr float kMorphStart = 0.9f;
+
+    explicit GeoMipmapMesh(std::shared_ptr<const GeoMipmapErrors> errors);
+
+    DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
+    std::size_t bytes() const override;
+
+    /// Level of a block; -1 when it was not drawn.
+    int level(int blockColumn, int blockRow) const;
+
+private:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    static constexpr float kHidden = -1.0f;
+
+    struct Turned;
+
+    // Levels
+    void choose(const ScreenSpace& space, const Turned* turned, int boundsLevel, int column, int row);
+    void evaluate(std::uint32_t block, float factor);
+    bool fits(float error, float factor) const { return error == 0.0f || error * factor <= limit_; }
+    float fade(float error, float factor) const;
+    void settle();
+    void settleFinerThan(std::uint32_t block, int side);
+    void settleMorph(std::uint32_t block, int side);
+    void lower(std::uint32_t block, float detail);
+    void push(std::uint32_t block);
+    std::uint32_t neighbour(std::uint32_t block, int side) const;
+    bool canMorph(std::uint32_t block) const { return errors_->shape(block).isFull() && !errors_->hasHoles(block); }
+    int levelOf(std::uint32_t block) const { return int(detail_[block]); }
+
+    // Triangles
+    void list();
+    void emit(const SampleGrid& grid);
+    void emitBlock(const SampleGrid& grid, const DrawnBlock& drawn);
+    void emitTriangles(std::span<const GeoMipmapShape::Triangle> triangles, const std::uint32_t* vertices);
+    void emitSolid(const SampleGrid& grid, const DrawnBlock& drawn, std::span<const GeoMipmapShape::Triangle> triangles,
+                   const std::uint32_t* vertices);
+    float boundError(const ScreenSpace& space) const;
+    float boundSides(std::uint32_t block) const;
+
+    std::shared_ptr<const GeoMipmapErrors> errors_;
+    BlockLayout layout_;
+    GeoMipmapVertices vertices_;
+    LodSettings settings_;
+    std::optional<View> view_;
+    bool morphing_ = false;
+    float limit_ = 0.0f;  ///< pixels up to which a level is taken
+
+    std::vector<float> detail_;          ///< by block; kHidden where nothing is drawn
+    std::vector<float> factor_;          ///< pixels that a unit of error takes on screen at most, by block
+    std::vector<bool> queued_;           ///< by block
+    std::vector<std::uint32_t> chosen_;  ///< blocks to be drawn
+    std::vector<std::uint32_t> queue_;
+    std::vector<DrawnBlock> drawn_, drawnBefore_;
+    std::vector<std::uint32_t> indices_;
+    SelectionReport report_;
+};
+
+}  // namespace terrain

@@ -1,0 +1,237 @@
+#include "lod/GeoMipmapVertices.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace terrain {
+
+GeoMipmapVertices::GeoMipmapVertices(std::shared_ptr<const GeoMipmapErrors> errors)
+    : errors_(std::move(errors)), layout_(errors_->layout()) {
+    const std::uint32_t columns = std::uint32_t(layout_.blockColumns), rows = std::uint32_t(layout_.blockRows);
+    firstHorizontal_ = (columns + 1) * (rows + 1);
+    firstVertical_ = firstHorizontal_ + columns * (rows + 1);
+    firstInner_ = firstVertical_ + (columns + 1) * rows;
+    ranges_.resize(firstInner_ + columns * rows);
+    const std::size_t pitch = std::size_t(GeoMipmapShape::pitch(layout_.exponent));
+    ids_.resize(pitch * pitch);
+}
+
+glm::ivec2 GeoMipmapVertices::blockAt(std::uint32_t block) const {
+    return {int(block % std::uint32_t(layout_.blockColumns)), int(block / std::uint32_t(layout_.blockColumns))};
+}
+
+std::uint32_t GeoMipmapVertices::sideRange(glm::ivec2 block, int side) const {
+    switch (side) {
+    case GeoMipmapShape::Bottom:
+        return horizontalRange(block);
+    case GeoMipmapShape::Right:
+        return verticalRange({block.x + 1, block.y});
+    case GeoMipmapShape::Top:
+        return horizontalRange({block.x, block.y + 1});
+    default:
+        return verticalRange(block);
+    }
+}
+
+/// Position of a line of so many cells' extent, by its number from 0; the last is at the end.
+int GeoMipmapVertices::lineAt(int line, int cells, int level) const {
+    return level == layout_.exponent ? (line ? cells : 0) : std::min(line << level, cells);
+}
+
+GeoMipmapVertices::Extent GeoMipmapVertices::extent(std::uint32_t range, int level) const {
+    const auto sampleAt = [&](glm::ivec2 block) {
+        return glm::ivec2(block.x == layout_.blockColumns ? layout_.columns - 1 : block.x * layout_.tileSize,
+                          block.y == layout_.blockRows ? layout_.rows - 1 : block.y * layout_.tileSize);
+    };
+    const auto inside = [&](int cells) { return level == layout_.exponent ? 0 : (cells - 1) >> level; };
+    const auto split = [](std::uint32_t number, int columns) {
+        return glm::ivec2(int(number % std::uint32_t(columns)), int(number / std::uint32_t(columns)));
+    };
+    if (range < firstHorizontal_) return {sampleAt(split(range, layout_.blockColumns + 1)), {0, 0}, {1, 1}};
+    if (range < firstVertical_) {
+        const glm::ivec2 at = split(range - firstHorizontal_, layout_.blockColumns);
+        const int cells = layout_.width(at.x);
+        return {sampleAt(at), {cells, 0}, {inside(cells), 1}};
+    }
+    if (range < firstInner_) {
+        const glm::ivec2 at = split(range - firstVertical_, layout_.blockColumns + 1);
+        const int cells = layout_.height(at.y);
+        return {sampleAt(at), {0, cells}, {1, inside(cells)}};
+    }
+    const glm::ivec2 at = split(range - firstInner_, layout_.blockColumns), cells(layout_.width(at.x), layout_.height(at.y));
+    return {sampleAt(at), cells, {inside(cells.x), inside(cells.y)}};
+}
+
+glm::ivec2 GeoMipmapVertices::sampleOf(const Extent& e, int level, int number) const {
+    const glm::ivec2 line(number % e.count.x + 1, number / e.count.x + 1);
+    return e.from + glm::ivec2(e.cells.x ? lineAt(line.x, e.cells.x, level) : 0, e.cells.y ? lineAt(line.y, e.cells.y, level) : 0);
+}
+
+void GeoMipmapVertices::use(std::uint32_t number, std::uint8_t level) {
+    Range& range = ranges_[number];
+    range.frame = frame_;
+    if (range.level == level) return;
+    if (range.level == kUnused)
+        used_.push_back(number);
+    else
+        release(range, number);
+    range.level = level;
+    added_.push_back(number);
+}
+
+void GeoMipmapVertices::release(Range& range, std::uint32_t number) {
+    const Extent e = extent(number, range.level);
+    if (const int size = e.count.x * e.count.y; size > 0) free_[std::uint32_t(size)].push_back(range.first);
+    range.level = kUnused;
+}
+
+void GeoMipmapVertices::allocate(const SampleGrid& grid, std::uint32_t number) {
+    Range& range = ranges_[number];
+    const Extent e = extent(number, range.level);
+    const std::uint32_t size = std::uint32_t(e.count.x * e.count.y);
+    if (size == 0) return;
+    std::vector<std::uint32_t>& fitting = free_[size];
+    if (fitting.empty()) {
+        range.first = std::uint32_t(positions_.size());
+        positions_.resize(positions_.size() + size);
+        samples_.resize(positions_.size());
+    } else {
+        range.first = fitting.back();
+        fitting.pop_back();
+    }
+    place(grid, number, true);
+}
+
+void GeoMipmapVertices::place(const SampleGrid& grid, std::uint32_t number, bool isNew) {
+    const Range& range = ranges_[number];
+    const Extent e = extent(number, range.level);
+    for (int i = 0; i < e.count.x * e.count.y; ++i) {
+        const glm::ivec2 sample = sampleOf(e, range.level, i);
+        const std::uint32_t vertex = range.first + std::uint32_t(i);
+        // What lies in a hole is part of a range, but of no triangle.
+        positions_[vertex] = grid.isHole(sample.x, sample.y) ? glm::vec3(0.0f) : grid.position(sample.x, sample.y);
+        if (!isNew) continue;
+        samples_[vertex] = std::uint32_t(grid.index(sample.x, sample.y));
+        newVertices_.push_back(vertex);
+    }
+}
+
+void GeoMipmapVertices::update(const SampleGrid& grid, std::span<const DrawnBlock> blocks) {
+    ++frame_;
+    added_.clear();
+    for (const DrawnBlock& drawn : blocks) {
+        const glm::ivec2 at = blockAt(drawn.block);
+        use(cornerRange(at), 0);
+        use(cornerRange({at.x + 1, at.y}), 0);
+        use(cornerRange({at.x, at.y + 1}), 0);
+        use(cornerRange({at.x + 1, at.y + 1}), 0);
+        for (int side = 0; side < 4; ++side) use(sideRange(at, side), drawn.border[std::size_t(side)]);
+        use(innerRange(drawn.block), drawn.level);
+    }
+    std::erase_if(used_, [this](std::uint32_t number) {
+        Range& range = ranges_[number];
+        if (range.frame == frame_) return false;
+        release(range, number);
+        return true;
+    });
+    for (const std::uint32_t number : added_) allocate(grid, number);
+}
+
+const std::uint32_t* GeoMipmapVertices::of(const DrawnBlock& drawn) {
+    const glm::ivec2 at = blockAt(drawn.block);
+    const int width = layout_.width(at.x), height = layout_.height(at.y), pitch = GeoMipmapShape::pitch(layout_.exponent);
+    const auto first = [this](std::uint32_t number) { return ranges_[number].first; };
+    ids_[0] = first(cornerRange(at));
+    ids_[std::size_t(width)] = first(cornerRange({at.x + 1, at.y}));
+    ids_[std::size_t(height * pitch)] = first(cornerRange({at.x, at.y + 1}));
+    ids_[std::size_t(height * pitch + width)] = first(cornerRange({at.x + 1, at.y + 1}));
+    for (int side = 0; side < 4; ++side) {
+        if (drawn.border[std::size_t(side)] == layout_.exponent) continue;
+        const bool horizontal = side % 2 == 0;
+        const int step = 1 << drawn.border[std::size_t(side)], start = side == GeoMipmapShape::Top     ? height * pitch
+                                                                       : side == GeoMipmapShape::Right ? width
+                                                                                                       : 0;
+        std::uint32_t vertex = first(sideRange(at, side));
+        for (int line = step; line < (horizontal ? width : height); line += step)
+            ids_[std::size_t(start + line * (horizontal ? 1 : pitch))] = vertex++;
+    }
+    if (drawn.level == layout_.exponent) return ids_.data();
+    const int step = 1 << drawn.level;
+    std::uint32_t vertex = first(innerRange(drawn.block));
+    for (int row = step; row < height; row += step)
+        for (int column = step; column < width; column += step) ids_[std::size_t(row * pitch + column)] = vertex++;
+    return ids_.data();
+}
+
+bool GeoMipmapVertices::morph(const SampleGrid& grid, std::span<const DrawnBlock> blocks, const std::vector<float>& detail) {
+    const bool anyBefore = !moved_.empty();
+    for (const std::uint32_t number : moved_)
+        if (ranges_[number].level != kUnused) place(grid, number, false);
+    moved_.clear();
+    // Borders first: what is inside stands between them.
+    for (const DrawnBlock& drawn : blocks) {
+        const glm::ivec2 at = blockAt(drawn.block);
+        for (int side = 0; side < 4; ++side) {
+            const float beyond = detailBeyond(detail, at, side);
+            // Each border once: from the block whose lower or left side it is, if that is drawn.
+            if (beyond >= 0.0f && (side == GeoMipmapShape::Right || side == GeoMipmapShape::Top)) continue;
+            const float coarse = std::max(detail[drawn.block], beyond) - float(drawn.border[std::size_t(side)]);
+            if (coarse > 0.0f) morphBorder(grid, sideRange(at, side), coarse);
+        }
+    }
+    for (const DrawnBlock& drawn : blocks)
+        if (const float coarse = detail[drawn.block] - float(drawn.level); coarse > 0.0f) morphInner(grid, drawn, coarse);
+    return anyBefore || !moved_.empty();
+}
+
+float GeoMipmapVertices::detailBeyond(const std::vector<float>& detail, glm::ivec2 block, int side) const {
+    constexpr glm::ivec2 kStep[4] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
+    const glm::ivec2 at = block + kStep[side];
+    if (at.x < 0 || at.y < 0 || at.x >= layout_.blockColumns || at.y >= layout_.blockRows) return -1.0f;
+    return detail[std::size_t(at.y) * std::size_t(layout_.blockColumns) + std::size_t(at.x)];
+}
+
+void GeoMipmapVertices::morphBorder(const SampleGrid& grid, std::uint32_t number, float coarse) {
+    const Range& range = ranges_[number];
+    const Extent e = extent(number, range.level);
+    const int count = e.count.x * e.count.y;
+    const glm::ivec2 step = e.cells.x ? glm::ivec2(1 << range.level, 0) : glm::ivec2(0, 1 << range.level);
+    for (int i = 0; i < count; i += 2) {
+        const glm::ivec2 p = sampleOf(e, range.level, i);
+        const glm::vec3 truth = grid.position(p.x, p.y);
+        const glm::vec3 middle = (grid.position(p.x - step.x, p.y - step.y) + grid.position(p.x + step.x, p.y + step.y)) * 0.5f;
+        positions_[range.first + std::uint32_t(i)] = middle + (1.0f - coarse) * (truth - middle);
+    }
+    moved_.push_back(number);
+}
+
+void GeoMipmapVertices::morphInner(const SampleGrid& grid, const DrawnBlock& drawn, float coarse) {
+    const std::uint32_t* ids = of(drawn);
+    const glm::ivec2 from = blockAt(drawn.block) * layout_.tileSize;
+    const int step = 1 << drawn.level, cells = layout_.tileSize >> drawn.level, pitch = GeoMipmapShape::pitch(layout_.exponent);
+    const bool last = drawn.level + 1 == layout_.exponent;
+    for (int row = 1; row < cells; ++row)
+        for (int column = 1; column < cells; ++column) {
+            if (row % 2 == 0 && column % 2 == 0) continue;
+            // Which edge of the next level the vertex stands on.
+            glm::ivec2 along(column % 2, row % 2);
+            if (along.x && along.y && (last ? errors_->hasOtherDiagonal(drawn.block) : (column / 2 + row / 2) % 2 == 1))
+                along.y = -1;
+            const glm::ivec2 p = glm::ivec2(column, row) * step, a = p - along * step, b = p + along * step;
+            const auto truth = [&](glm::ivec2 at) { return grid.position(from.x + at.x, from.y + at.y); };
+            const auto vertex = [&](glm::ivec2 at) { return ids[at.y * pitch + at.x]; };
+            positions_[vertex(p)] = (positions_[vertex(a)] + positions_[vertex(b)]) * 0.5f +
+                                    (1.0f - coarse) * (truth(p) - (truth(a) + truth(b)) * 0.5f);
+        }
+    moved_.push_back(innerRange(drawn.block));
+}
+
+std::size_t GeoMipmapVertices::bytes() const {
+    const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
+    std::size_t total = held(ranges_) + held(used_) + held(added_) + held(moved_) + held(ids_) + held(positions_) + held(samples_) +
+                        held(newVertices_);
+    for (const auto& [size, firsts] : free_) total += held(firsts);
+    return total;
+}
+
+}  // namespace terrain
