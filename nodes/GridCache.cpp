@@ -103,6 +103,7 @@ Result<TerrainGrid> GridCache::findMap(SoState * state, const GridRequest & requ
     key.fromHeightMap = true;
     Entry & entry = entryFor(key);
     entry.grid = SampleGrid(map, column, row, key.columns, key.rows);
+    entry.model.samples = element->getSource()->weak_from_this().lock();
     return complete(entry, withErrors);
 }
 

@@ -1,6 +1,7 @@
 #include <SoTerrain/SoTerrain.h>
 
 #include <SoTerrain/SoBruteForceTerrain.h>
+#include <SoTerrain/SoChunkedLoDTerrain.h>
 #include <SoTerrain/SoGeoMipmapTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoHeightMapElement.h>
@@ -19,6 +20,7 @@ void SoTerrain::init()
     SoHeightMap::initClass();
     SoTerrainShape::initClass();
     SoBruteForceTerrain::initClass();
+    SoChunkedLoDTerrain::initClass();
     SoGeoMipmapTerrain::initClass();
     SoROAMTerrain::initClass();
 }

@@ -44,7 +44,7 @@ struct HeightTile {
 };
 
 /// A source of heights. Immutable after opening; every member may be called from any thread.
-class HeightSource {
+class HeightSource : public std::enable_shared_from_this<HeightSource> {
 public:
     virtual ~HeightSource() = default;
 

@@ -45,6 +45,9 @@ public:
 
     /// Height of a sample of a regular grid; NaN in a hole.
     float height(int column, int row) const { return heights_[(std::size_t(row) * pitch_ + std::size_t(column)) * stride_]; }
+    /// Heights of a row of a regular grid, heightStride() floats from one to the next.
+    const float* heightRow(int row) const { return heights_ + std::size_t(row) * pitch_ * stride_; }
+    std::size_t heightStride() const { return stride_; }
     /// Position in local coordinates; not finite in a hole.
     glm::vec3 position(int column, int row) const;
     /// Position in the grid's frame.

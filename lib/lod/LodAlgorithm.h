@@ -12,12 +12,15 @@ namespace terrain {
 
 /// What a selection is to meet. An algorithm ignores what it has no use for.
 struct LodSettings {
-    float pixelError = 2.0f;           ///< largest screen error of any sample in view, in pixels; 0: full detail
-    std::uint32_t triangleBudget = 0;  ///< hard limit on the triangles of the mesh; 0: none
-    std::uint32_t operationLimit = 0;  ///< most splits and merges of a selection but the first; 0: no limit
-    bool cull = true;                  ///< leave out what is outside of the view volume, and do not refine it
-    bool geomorph = false;             ///< let vertices slide between the coarse and the fine surface
-    bool clockwise = false;            ///< orientation of the triangles in the grid's (column, row) plane
+    float pixelError = 2.0f;                            ///< largest screen error of any sample in view, in pixels; 0: full detail
+    std::uint32_t triangleBudget = 0;                   ///< hard limit on the triangles of the mesh; 0: none
+    std::uint32_t operationLimit = 0;                   ///< most splits and merges of a selection but the first; 0: no limit
+    bool cull = true;                                   ///< leave out what is outside of the view volume, and do not refine it
+    bool geomorph = false;                              ///< let vertices slide between the coarse and the fine surface
+    std::size_t memoryBudget = std::size_t(256) << 20;  ///< bytes that tiles may take
+    std::size_t uploadBudget = 0;  ///< bytes of vertices that tiles new on screen may send to GL in a frame; 0: no limit
+    bool complete = false;         ///< wait for tiles that are built in the background, and send them whatever the upload budget
+    bool clockwise = false;        ///< orientation of the triangles in the grid's (column, row) plane
 
     bool operator==(const LodSettings&) const = default;
 };

@@ -8,11 +8,12 @@
 
 namespace terrain {
 
-/// Bounds and errors of one grid, without any pointer to the samples. Bounds come first and cheap; errors only once something is
+/// Bounds and errors of one grid. Bounds come first and cheap; errors only once something is
 /// drawn with level of detail.
 struct TerrainModel {
     std::shared_ptr<const BoxPyramid> boxes;
     std::shared_ptr<const ErrorHierarchy> errors;
+    std::shared_ptr<const void> samples = nullptr;  ///< keeps the samples' memory, where it can be kept
 
     std::size_t bytes() const { return (boxes ? boxes->bytes() : 0) + (errors ? errors->bytes() : 0); }
 };

@@ -129,7 +129,7 @@ public:
 private:
     /// So many jobs per worker are submitted per frame at most, and for so many tiles room is made by evicting others: enough to
     /// keep workers busy until the next frame, few enough that a turn of the head does not cost all that was resident.
-    static constexpr std::size_t kJobsPerWorker = 8;
+    static constexpr std::size_t kJobsPerWorker = 64;
 
     using Request = typename TileJobs<Tile>::Request;
     using Finished = typename TileJobs<Tile>::Finished;

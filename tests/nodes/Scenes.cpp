@@ -17,6 +17,7 @@
 #include <Inventor/nodes/SoTextureUnit.h>
 
 #include <SoTerrain/SoBruteForceTerrain.h>
+#include <SoTerrain/SoChunkedLoDTerrain.h>
 #include <SoTerrain/SoGeoMipmapTerrain.h>
 #include <SoTerrain/SoROAMTerrain.h>
 
@@ -33,6 +34,7 @@ const char* nameOf(Kind kind) {
     case Kind::BruteForce: return "brute force";
     case Kind::Roam: return "ROAM";
     case Kind::GeoMipmap: return "Geo Mip-Mapping";
+    case Kind::ChunkedLod: return "Chunked LoD";
     }
     return "";
 }
@@ -41,6 +43,7 @@ std::string identifierOf(Kind kind) {
     switch (kind) {
     case Kind::Roam: return "Roam";
     case Kind::GeoMipmap: return "GeoMipmap";
+    case Kind::ChunkedLod: return "ChunkedLod";
     default: return "BruteForce";
     }
 }
@@ -119,6 +122,12 @@ SoTerrainShape* newNode(Kind kind) {
     switch (kind) {
     case Kind::Roam: return new SoROAMTerrain;
     case Kind::GeoMipmap: return new SoGeoMipmapTerrain;
+    case Kind::ChunkedLod: {
+        // Complete in every picture.
+        auto* node = new SoChunkedLoDTerrain;
+        node->background = FALSE;
+        return node;
+    }
     default: return new SoBruteForceTerrain;
     }
 }

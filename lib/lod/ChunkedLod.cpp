@@ -1,0 +1,311 @@
+#include "lod/ChunkedLod.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "base/ProfileScope.h"
+
+namespace terrain {
+
+namespace {
+
+/// Tiles are asked for before they are needed: at this part of the pixel error, and within so much more than the window's width.
+constexpr float kEarly = 0.6f;
+constexpr double kMargin = 0.25;
+
+std::shared_ptr<const TileMesh> buildByKey(const std::shared_ptr<TileFactory>& factory, const TileKey& key) {
+    return factory->build({key.level, key.column, key.row});
+}
+
+}  // namespace
+
+ChunkedLod::ChunkedLod(const TerrainModel& model, const SampleGrid& grid, int tileCells, std::shared_ptr<const void> owner,
+                       std::shared_ptr<TaskRunner> runner)
+    : model_(model), tree_{grid.columns(), grid.rows(), tileCells},
+      samples_(std::make_shared<TileSamples>(grid, model.boxes->hasHoles(), std::move(owner))),
+      factory_(std::make_shared<TileFactory>(samples_, tree_)),
+      cache_(std::move(runner), [factory = factory_](const TileKey& key) { return buildByKey(factory, key); }) {}
+
+Box ChunkedLod::boxOf(const TileId& id) const {
+    const glm::ivec2 first = tree_.firstSample(id), last = first + tree_.extent(id.level);
+    return terrain::boxOf(model_.boxes->bounds(first.x, first.y, last.x, last.y));
+}
+
+DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
+    const bool atRest = !isFirst_ && report_.converged && view == view_ && settings == settings_;
+    const SelectionReport last = report_;
+    report_ = SelectionReport{};
+    newVertices_.clear();
+    positionsChanged_ = false;
+    placedBytes_ = 0;
+    bool indicesChanged = false;
+    if (atRest) {
+        report_ = last;
+    } else {
+        const bool turned = settings.clockwise != settings_.clockwise;
+        view_ = view;
+        settings_ = settings;
+        space_.emplace(view, grid.localFromFrame(), grid.isRegular() ? ErrorDirection::Vertical : ErrorDirection::Any);
+        View wide = view;
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 2; ++row) wide.clipFromLocal[column][row] /= 1.0 + kMargin;
+        wide_.emplace(wide, grid.localFromFrame(), ErrorDirection::Vertical);
+        choose();
+        place(grid);
+        const auto isSame = [](const Tile& a, const Tile& b) { return a.id == b.id && a.base == b.base; };
+        indicesChanged = turned || !std::equal(drawn_.begin(), drawn_.end(), drawnBefore_.begin(), drawnBefore_.end(), isSame);
+        if (indicesChanged) writeIndices();
+        report_.triangles = std::uint32_t(indices_.size() / 3);
+    }
+    isFirst_ = false;
+    DrawList list;
+    list.positions = positions_;
+    list.samples = samplesOf_;
+    list.indices = indices_;
+    list.newVertices = newVertices_;
+    list.positionsChanged = positionsChanged_;
+    list.indicesChanged = indicesChanged;
+    list.report = report_;
+    return list;
+}
+
+void ChunkedLod::choose() {
+    const ProfileScope scope("chunked: choose tiles");
+    std::swap(drawn_, drawnBefore_);
+    // Once more after all is there, because the last tiles may have come while others were chosen.
+    for (bool wasIdle = false;;) {
+        chooseOnce();
+        const bool isIdle = cache_.isIdle();
+        if (!settings_.complete || report_.converged || (isIdle && wasIdle)) return;
+        wasIdle = isIdle;
+        cache_.wait();
+    }
+}
+
+void ChunkedLod::chooseOnce() {
+    report_ = SelectionReport{};
+    drawn_.clear();
+    const std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+    credit_ = settings_.uploadBudget > 0 && !settings_.complete ? settings_.uploadBudget : unlimited;
+    cache_.setBudget(settings_.memoryBudget);
+    // Takes in what was built since the last frame, so that it serves this one.
+    cache_.endFrame();
+    cache_.beginFrame();
+    const TileId root{tree_.rootLevel(), 0, 0};
+    if (cache_.buildNow(keyOf(root)) && !visit(root, 0.0f)) {
+        // Whatever the budget, something is drawn.
+        credit_ = unlimited;
+        const TileMesh& mesh = *cache_.find(keyOf(root));
+        draw(root, mesh, boxOf(root), 0.0f);
+        report_.converged = false;
+    }
+    cache_.endFrame();
+}
+
+bool ChunkedLod::visit(const TileId& id, float parentPixels) {
+    const Box box = boxOf(id);
+    const bool isOutside = space_->isOutside(box);
+    if (isOutside && settings_.cull) {
+        prefetch(id, parentPixels);
+        return true;
+    }
+    const TileMesh& mesh = *cache_.find(keyOf(id));
+    const float pixels = isOutside ? 0.0f : space_->screenError(mesh.error, box);
+    const bool isLeaf = id.level <= tree_.leafLevel();
+    if (pixels > settings_.pixelError && !isLeaf) {
+        if (areChildrenReady(id, pixels) && visitChildren(id, pixels)) return true;
+        report_.converged = false;
+    } else if (!isLeaf) {
+        prefetchChildren(id, pixels);
+    }
+    if (draw(id, mesh, box, parentPixels)) return true;
+    // Not on screen yet, and too much to send now: what is there may be finer.
+    report_.converged = false;
+    return !isLeaf && pixels <= settings_.pixelError && areChildrenReady(id, 0.0f) && visitChildren(id, pixels);
+}
+
+bool ChunkedLod::areChildrenReady(const TileId& id, float pixels) {
+    bool ready = true;
+    for (int i = 0; i < (id.hasFourChildren() ? 4 : 1); ++i) {
+        const TileId child = id.child(i);
+        if (!tree_.contains(child) || (settings_.cull && space_->isOutside(boxOf(child))) || cache_.find(keyOf(child))) continue;
+        if (pixels > 0.0f) cache_.request(keyOf(child), pixels);
+        ready = false;
+    }
+    return ready;
+}
+
+void ChunkedLod::prefetchChildren(const TileId& id, float pixels) {
+    if (settings_.complete || pixels <= kEarly * settings_.pixelError || id.level <= tree_.leafLevel()) return;
+    for (int i = 0; i < (id.hasFourChildren() ? 4 : 1); ++i)
+        if (tree_.contains(id.child(i))) prefetch(id.child(i), pixels);
+}
+
+void ChunkedLod::prefetch(const TileId& id, float parentPixels) {
+    const Box box = boxOf(id);
+    if (settings_.complete || wide_->isOutside(box)) return;
+    if (const TileMesh* mesh = cache_.find(keyOf(id)))
+        prefetchChildren(id, space_->screenError(mesh->error, box));
+    else
+        // After whatever is needed now.
+        cache_.request(keyOf(id), 1e-3 * std::min(parentPixels, 1e3f));
+}
+
+bool ChunkedLod::visitChildren(const TileId& id, float pixels) {
+    const std::size_t drawnSoFar = drawn_.size(), creditSoFar = credit_;
+    const float error = report_.errorPixels;
+    for (int i = 0; i < (id.hasFourChildren() ? 4 : 1); ++i) {
+        const TileId child = id.child(i);
+        if (!tree_.contains(child) || visit(child, pixels)) continue;
+        drawn_.resize(drawnSoFar);
+        credit_ = creditSoFar;
+        report_.errorPixels = error;
+        return false;
+    }
+    return true;
+}
+
+float ChunkedLod::morphOf(const TileMesh& mesh, float parentPixels) const {
+    if (!settings_.geomorph || mesh.fall.empty() || !(mesh.parentError > 0.0f) || !std::isfinite(parentPixels)) return 1.0f;
+    if (parentPixels <= settings_.pixelError) return 0.0f;
+    const double ratio = double(mesh.error) / double(mesh.parentError);
+    // A mesh no better than its parent's keeps the same error however it morphs.
+    const double gain = ratio < 1.0 ? 1.0 - ratio : 0.25;
+    const double t = (1.0 - double(settings_.pixelError) / double(parentPixels)) / gain;
+    return std::min(1.0f, std::nextafter(float(t), 2.0f));
+}
+
+bool ChunkedLod::draw(const TileId& id, const TileMesh& mesh, const Box& box, float parentPixels) {
+    const auto slot = slots_.find(id);
+    if (slot == slots_.end()) {
+        if (vertexBytes(mesh) > credit_) return false;
+        credit_ -= vertexBytes(mesh);
+    }
+    const float t = morphOf(mesh, parentPixels);
+    const double share = 1.0 - double(t);
+    const float error = t < 1.0f ? float(mesh.parentError * share + mesh.error * double(t)) : mesh.error;
+    if (!space_->isOutside(box)) report_.errorPixels = std::max(report_.errorPixels, space_->screenError(error, box));
+    drawn_.push_back({id, &mesh, t, 0});
+    return true;
+}
+
+void ChunkedLod::place(const SampleGrid& grid) {
+    const ProfileScope scope("chunked: place vertices");
+    for (auto& [id, slot] : slots_) slot.isDrawn = false;
+    for (const Tile& tile : drawn_)
+        if (const auto slot = slots_.find(tile.id); slot != slots_.end()) slot->second.isDrawn = true;
+    std::erase_if(slots_, [this](const auto& entry) {
+        if (!entry.second.isDrawn) pool_.release(entry.second.base, entry.second.count);
+        return !entry.second.isDrawn;
+    });
+    for (Tile& tile : drawn_) {
+        auto [slot, isNew] = slots_.try_emplace(tile.id);
+        if (isNew) {
+            slot->second.count = std::uint32_t(tile.mesh->at.size());
+            slot->second.base = pool_.allocate(slot->second.count);
+            placedBytes_ += vertexBytes(*tile.mesh);
+        }
+        tile.base = slot->second.base;
+    }
+    positions_.resize(pool_.end());
+    targets_.resize(pool_.end());
+    samplesOf_.resize(pool_.end());
+    for (Tile& tile : drawn_) writePositions(grid, tile, slots_.at(tile.id));
+}
+
+void ChunkedLod::writePositions(const SampleGrid& grid, Tile& tile, Slot& slot) {
+    const TileMesh& mesh = *tile.mesh;
+    if (slot.morph == tile.morph) return;
+    const bool isNew = slot.morph < 0.0f;
+    slot.morph = tile.morph;
+    positionsChanged_ = true;
+    if (isNew)
+        for (std::uint32_t i = 0; i < slot.count; ++i) {
+            const glm::ivec2 at = mesh.at[i];
+            targets_[slot.base + i] = grid.position(at.x, at.y);
+            samplesOf_[slot.base + i] = std::uint32_t(grid.index(at.x, at.y));
+            newVertices_.push_back(slot.base + i);
+        }
+    if (tile.morph >= 1.0f) {
+        std::copy_n(targets_.begin() + slot.base, slot.count, positions_.begin() + slot.base);
+        return;
+    }
+    const glm::vec3 up(grid.localFromFrame()[2]);
+    const float share = 1.0f - tile.morph;
+    for (std::uint32_t i = 0; i < slot.count; ++i) {
+        const glm::vec3 fall = grid.isRegular() ? up * mesh.fall[i].z : mesh.fall[i];
+        positions_[slot.base + i] = targets_[slot.base + i] + fall * share;
+    }
+}
+
+void ChunkedLod::writeIndices() {
+    const ProfileScope scope("chunked: write indices");
+    indices_.clear();
+    for (const Tile& tile : drawn_) {
+        const std::vector<std::uint16_t>& own = tile.mesh->indices;
+        const std::size_t before = indices_.size();
+        indices_.resize(before + own.size());
+        std::uint32_t* out = indices_.data() + before;
+        for (std::size_t i = 0; i < own.size(); ++i) out[i] = own[i] + tile.base;
+        if (settings_.clockwise)
+            for (std::size_t i = 0; i + 2 < own.size(); i += 3) std::swap(out[i + 1], out[i + 2]);
+    }
+    writeWalls();
+}
+
+std::vector<ChunkedLod::BorderLine> ChunkedLod::borderLines() const {
+    std::vector<BorderLine> lines;
+    lines.reserve(drawn_.size() * 4);
+    for (std::size_t tile = 0; tile < drawn_.size(); ++tile) {
+        const TileId& id = drawn_[tile].id;
+        const glm::ivec2 first = tree_.firstSample(id), last = first + tree_.extent(id.level);
+        // A tile lies to the left of its lowest row as one goes along it, and so on.
+        lines.push_back({false, first.y, false, first.x, last.x, tile, 0});
+        lines.push_back({true, last.x, false, first.y, last.y, tile, 1});
+        lines.push_back({false, last.y, true, first.x, last.x, tile, 2});
+        lines.push_back({true, first.x, true, first.y, last.y, tile, 3});
+    }
+    std::sort(lines.begin(), lines.end(), [](const BorderLine& a, const BorderLine& b) {
+        return std::tie(a.alongRows, a.line, a.first, b.last) < std::tie(b.alongRows, b.line, b.first, a.last);
+    });
+    return lines;
+}
+
+void ChunkedLod::appendVertices(const BorderLine& line, std::vector<BorderVertex>& out) const {
+    const Tile& tile = drawn_[line.tile];
+    const std::vector<std::uint16_t>& border = tile.mesh->border[line.side];
+    // Borders run counter-clockwise around a tile: against the increasing place on two sides.
+    for (std::size_t i = 0; i < border.size(); ++i) {
+        const std::uint16_t vertex = border[line.side < 2 ? i : border.size() - 1 - i];
+        const glm::ivec2 at = tile.mesh->at[vertex];
+        out.push_back({line.alongRows ? at.y : at.x, tile.base + vertex});
+    }
+}
+
+void ChunkedLod::writeWalls() {
+    const std::vector<BorderLine> lines = borderLines();
+    // The longest that begins at a place comes first: with all that lies along it on the other side it makes one wall.
+    for (std::size_t i = 0; i < lines.size();) {
+        const BorderLine& longest = lines[i];
+        rightLine_.clear();
+        leftLine_.clear();
+        std::size_t j = i;
+        for (; j < lines.size() && lines[j].alongRows == longest.alongRows && lines[j].line == longest.line &&
+               lines[j].last <= longest.last;
+             ++j)
+            appendVertices(lines[j], lines[j].isRight ? rightLine_ : leftLine_);
+        appendWall(rightLine_, leftLine_, settings_.clockwise, indices_);
+        i = j;
+    }
+}
+
+std::size_t ChunkedLod::bytes() const {
+    const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
+    return samples_->bytes() + cache_.residentBytes() + held(positions_) + held(targets_) + held(samplesOf_) + held(newVertices_) +
+           held(indices_) + held(drawn_) + held(drawnBefore_);
+}
+
+}  // namespace terrain

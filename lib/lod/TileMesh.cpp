@@ -1,0 +1,381 @@
+#include "lod/TileMesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "lod/DiamondTopology.h"
+
+namespace terrain {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::uint16_t kNoPlace = 0xffff;
+/// Error of a tile relative to its parent's. Larger: more levels and tiles; smaller: more triangles, because errors fit distances
+/// less closely.
+constexpr float kFiner = 0.75f;
+/// Splits of the root's mesh before those that follow from them; from there on errors are halved from level to level.
+constexpr int kRootSplits = 300;
+
+std::int64_t crossProduct(glm::ivec2 a, glm::ivec2 b) {
+    return std::int64_t(a.x) * b.y - std::int64_t(a.y) * b.x;
+}
+
+/// A surface over one triangle of samples.
+template <class Value>
+struct Plane {
+    glm::ivec2 origin{0};
+    Value value{}, alongColumns{}, alongRows{};
+    Value at(glm::ivec2 p) const { return value + alongColumns * float(p.x - origin.x) + alongRows * float(p.y - origin.y); }
+};
+
+/// The corners must not lie on a line.
+template <class Samples>
+auto planeThrough(const Samples& samples, glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
+    using Value = typename Samples::Value;
+    const glm::ivec2 ab = b - a, ac = c - a;
+    const float scale = 1.0f / (float(ab.x) * float(ac.y) - float(ab.y) * float(ac.x));
+    const Value va = samples.at(a), vb = samples.at(b) - va, vc = samples.at(c) - va;
+    return Plane<Value>{a, va, (vb * float(ac.y) - vc * float(ab.y)) * scale, (vc * float(ab.x) - vb * float(ac.x)) * scale};
+}
+
+/// Where an edge crosses rows.
+struct Edge {
+    glm::ivec2 from;
+    int across, rows;  ///< columns that it goes while it goes so many rows, which are 1 where that is exact
+    Edge(glm::ivec2 p, glm::ivec2 q) : from(p), across(q.x - p.x), rows(q.y - p.y) {
+        if (rows > 0 && across % rows == 0) {
+            across /= rows;
+            rows = 1;
+        }
+    }
+    /// The first column not left of the edge.
+    int after(int row) const {
+        const int way = across * (row - from.y);
+        return rows == 1 ? from.x + way : from.x + (way >= 0 ? (way + rows - 1) / rows : way / rows);
+    }
+    /// The last one not right of it.
+    int before(int row) const {
+        const int way = across * (row - from.y);
+        return rows == 1 ? from.x + way : from.x + (way >= 0 ? way / rows : (way - rows + 1) / rows);
+    }
+};
+
+/// Largest deviation of the samples in a triangle from the plane through its corners.
+template <class Samples>
+float triangleDeviation(const Samples& samples, glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
+    if (crossProduct(b - a, c - a) == 0) return 0.0f;
+    const auto plane = planeThrough(samples, a, b, c);
+    if (b.y < a.y) std::swap(a, b);
+    if (c.y < a.y) std::swap(a, c);
+    if (c.y < b.y) std::swap(b, c);
+    const Edge whole(a, c), lower(a, b), upper(b, c);
+    const bool bendsRight = crossProduct(c - a, b - a) < 0;
+    float deviation = 0.0f;
+    for (int row = a.y; row <= c.y; ++row) {
+        const Edge& other = row < b.y || upper.rows == 0 ? lower : upper;
+        // Along a level edge at the bottom or the top all of it counts.
+        int first = bendsRight ? whole.after(row) : (other.rows == 0 ? b.x : other.after(row));
+        int last = bendsRight ? (other.rows == 0 ? b.x : other.before(row)) : whole.before(row);
+        if (row == b.y) (bendsRight ? last : first) = b.x;
+        if (first <= last)
+            deviation = std::max(deviation, samples.rowDeviation(row, first, last, plane.at({first, row}), plane.alongColumns));
+    }
+    return deviation;
+}
+
+/// Where the points of a tile's lattice lie. Those beyond the grid are moved onto its last column or row, so that triangles end
+/// there.
+class Lattice {
+public:
+    Lattice(const TileTree& tree, const TileId& id)
+        : cells(tree.extent(id.level) / tree.stride(id.level)), stride(tree.stride(id.level)),
+          first(glm::ivec2(id.column, id.row) * cells), last_(tree.columns - 1, tree.rows - 1) {}
+
+    glm::ivec2 sampleAt(glm::ivec2 p) const { return glm::min((first + p) * stride, last_); }
+    bool contains(glm::ivec2 p) const { return p.x >= 0 && p.y >= 0 && p.x <= cells && p.y <= cells; }
+    std::size_t place(glm::ivec2 p) const { return std::size_t(p.y) * std::size_t(cells + 1) + std::size_t(p.x); }
+    std::size_t places() const { return std::size_t(cells + 1) * std::size_t(cells + 1); }
+    bool isCut() const { return (first.x + cells) * stride > last_.x || (first.y + cells) * stride > last_.y; }
+    /// A diamond of the whole plane's bisection, moved to the tile's own coordinates: only so diagonals run as the parent's do.
+    DiamondShape diamond(glm::ivec2 p) const {
+        DiamondShape d(first + p);
+        d.centre -= first;
+        for (glm::ivec2& corner : d.corner) corner -= first;
+        return d;
+    }
+    /// Visits the centres of all diamonds of the tile's square, the finest first.
+    template <class Visit>
+    void forEachUpwards(Visit visit) const {
+        for (int s = 1; s < cells; s *= 2) {
+            for (int y = 0; y <= cells; y += s)
+                for (int x = (y & s) ? 0 : s; x <= cells; x += 2 * s) visit(glm::ivec2(x, y));
+            for (int y = s; y < cells; y += 2 * s)
+                for (int x = s; x < cells; x += 2 * s) visit(glm::ivec2(x, y));
+        }
+    }
+
+    const int cells, stride;
+    const glm::ivec2 first;
+
+private:
+    glm::ivec2 last_;
+};
+
+/// Which triangles of a tile reach into holes.
+class HoleMap {
+public:
+    enum State { Full, Empty, Mixed };
+
+    HoleMap(const TileSamples& samples, const Lattice& lattice) : side_(lattice.cells + 1) {
+        if (!samples.hasHoles()) return;
+        sums_.assign(std::size_t(side_) * std::size_t(side_), glm::ivec2(0));
+        for (int y = 0; y < lattice.cells; ++y)
+            for (int x = 0; x < lattice.cells; ++x) {
+                const glm::ivec2 low = lattice.sampleAt({x, y}), high = lattice.sampleAt({x + 1, y + 1});
+                glm::ivec2 count(0);
+                // Whatever lies on the last column or row already belongs to the cell before.
+                if (low.x < high.x && low.y < high.y)
+                    for (int row = low.y; row <= high.y; ++row)
+                        for (int column = low.x; column <= high.x; ++column) ++count[samples.isHole(column, row) ? 1 : 0];
+                hasHoles_ |= count[1] > 0;
+                at(x + 1, y + 1) = at(x + 1, y) + at(x, y + 1) - at(x, y) + count;
+            }
+    }
+
+    /// Of the box around a triangle, which is the triangle's own for what is left when nothing can be split any more.
+    State state(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) const {
+        if (!hasHoles_) return Full;
+        const glm::ivec2 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
+        const glm::ivec2 count = at(high.x, high.y) - at(low.x, high.y) - at(high.x, low.y) + at(low.x, low.y);
+        return count[1] == 0 ? Full : count[0] == 0 ? Empty : Mixed;
+    }
+
+private:
+    glm::ivec2& at(int x, int y) { return sums_[std::size_t(y) * std::size_t(side_) + std::size_t(x)]; }
+    const glm::ivec2& at(int x, int y) const { return sums_[std::size_t(y) * std::size_t(side_) + std::size_t(x)]; }
+
+    int side_;
+    bool hasHoles_ = false;
+    std::vector<glm::ivec2> sums_;  ///< valid and invalid samples of all cells before (x, y)
+};
+
+template <class Samples>
+class TileBuilder {
+public:
+    /// `measured`: what another tile of the same place and size has measured.
+    TileBuilder(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent,
+                std::vector<float> measured = {})
+        : samples_{samples}, lattice_(tree, id), above_(tree, id.parent()), holes_(samples, lattice_), parent_(parent),
+          mesh_(std::make_shared<TileMesh>()), deviation_(std::move(measured)) {
+        mesh_->id = id;
+        mesh_->latticeCells = lattice_.cells;
+        if (parent) mesh_->parentError = parent->error;
+        const bool isLeaf = id.level == tree.leafLevel();
+        if (deviation_.empty()) measure();
+        choose(isLeaf ? 0.0f : parent ? kFiner * parent->error : rootTarget());
+        vertexAt_.assign(lattice_.places(), kNoPlace);
+        emitAll();
+        findBorders();
+        if (parent && !lattice_.isCut()) findFall();
+    }
+
+    std::shared_ptr<const TileMesh> result() const { return mesh_; }
+    std::vector<float> takeMeasured() { return std::move(deviation_); }
+
+private:
+    using Value = typename Samples::Value;
+
+    float deviation(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) const {
+        switch (holes_.state(a, b, c)) {
+        case HoleMap::Empty:
+            return 0.0f;
+        case HoleMap::Mixed:
+            return kInfinity;
+        default:
+            return triangleDeviation(samples_, lattice_.sampleAt(a), lattice_.sampleAt(b), lattice_.sampleAt(c));
+        }
+    }
+
+    void measure() {
+        deviation_.assign(lattice_.places(), 0.0f);
+        lattice_.forEachUpwards([this](glm::ivec2 p) {
+            const DiamondShape d = lattice_.diamond(p);
+            float& worst = deviation_[lattice_.place(p)];
+            for (const glm::ivec2 apex : {d.corner[1], d.corner[3]})
+                if (lattice_.contains(apex)) worst = std::max(worst, deviation(d.corner[0], apex, d.corner[2]));
+        });
+    }
+
+    float rootTarget() const {
+        std::vector<float> sorted = deviation_;
+        const std::size_t splits = std::min(sorted.size() - 1, std::size_t(kRootSplits));
+        std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(splits), sorted.end(), std::greater<float>());
+        return std::isfinite(sorted[splits]) ? sorted[splits] : 0.0f;
+    }
+
+    /// What deviates too much is split, and so is what the parent has split, and what a split diamond hangs on.
+    void choose(float target) {
+        std::vector<std::uint8_t>& active = mesh_->active;
+        active.assign(lattice_.places(), 0);
+        lattice_.forEachUpwards([&](glm::ivec2 p) {
+            std::uint8_t& own = active[lattice_.place(p)];
+            if (deviation_[lattice_.place(p)] > target || isActiveInParent(p)) own = 1;
+            if (!own) return;
+            const DiamondShape d = lattice_.diamond(p);
+            // The apexes of the tile's own diagonal are its corners.
+            for (const glm::ivec2 apex : {d.corner[1], d.corner[3]})
+                if (lattice_.contains(apex)) active[lattice_.place(apex)] = 1;
+        });
+    }
+
+    bool isActiveInParent(glm::ivec2 p) const {
+        if (!parent_) return false;
+        const glm::ivec2 offset = (lattice_.first + p) * lattice_.stride - above_.first * above_.stride;
+        if (offset.x % above_.stride != 0 || offset.y % above_.stride != 0) return false;
+        return parent_->active[above_.place(offset / above_.stride)] != 0;
+    }
+
+    void emitAll() {
+        const int m = lattice_.cells;
+        const DiamondShape root = lattice_.diamond(glm::ivec2(m / 2));
+        emit(root.corner[0], root.corner[1], root.corner[2], root.centre);
+        emit(root.corner[2], root.corner[3], root.corner[0], root.centre);
+    }
+
+    /// A triangle with its right angle at `apex` and the middle of its longest edge.
+    void emit(glm::ivec2 first, glm::ivec2 apex, glm::ivec2 last, glm::ivec2 middle) {
+        if (mesh_->active[lattice_.place(middle)]) {
+            half(last, middle, apex);
+            half(apex, middle, first);
+            return;
+        }
+        mesh_->error = std::max(mesh_->error, deviation_[lattice_.place(middle)]);
+        put(first, apex, last);
+    }
+
+    void half(glm::ivec2 first, glm::ivec2 apex, glm::ivec2 last) {
+        const glm::ivec2 sum = first + last;
+        if ((sum.x | sum.y) & 1) {
+            // Nothing lies between: at full resolution such triangles are exact.
+            if (lattice_.stride > 1) mesh_->error = std::max(mesh_->error, deviation(first, apex, last));
+            put(first, apex, last);
+        } else {
+            emit(first, apex, last, sum / 2);
+        }
+    }
+
+    void put(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
+        const glm::ivec2 pa = lattice_.sampleAt(a), pb = lattice_.sampleAt(b), pc = lattice_.sampleAt(c);
+        const std::int64_t turn = crossProduct(pb - pa, pc - pa);
+        if (turn == 0 || holes_.state(a, b, c) != HoleMap::Full) return;
+        const std::uint16_t va = vertex(a), vb = vertex(b), vc = vertex(c);
+        mesh_->indices.insert(mesh_->indices.end(), {va, turn > 0 ? vb : vc, turn > 0 ? vc : vb});
+    }
+
+    std::uint16_t vertex(glm::ivec2 p) {
+        // Points beyond the grid are one with those on its border.
+        const glm::ivec2 sample = lattice_.sampleAt(p);
+        const glm::ivec2 onLattice = (sample + lattice_.stride - 1) / lattice_.stride - lattice_.first;
+        std::uint16_t& number = vertexAt_[lattice_.place(glm::min(p, onLattice))];
+        if (number == kNoPlace) {
+            number = std::uint16_t(mesh_->at.size());
+            mesh_->at.push_back(sample);
+        }
+        return number;
+    }
+
+    void findBorders() {
+        const int m = lattice_.cells;
+        for (int i = 0; i <= m; ++i) {
+            const glm::ivec2 on[4] = {{i, 0}, {m, i}, {m - i, m}, {0, m - i}};
+            for (std::size_t side = 0; side < 4; ++side)
+                if (const std::uint16_t number = vertexAt_[lattice_.place(on[side])]; number != kNoPlace)
+                    mesh_->border[side].push_back(number);
+        }
+    }
+
+    void findFall() {
+        mesh_->fall.reserve(mesh_->at.size());
+        for (const glm::ivec2 sample : mesh_->at) {
+            // In steps of the parent's lattice, doubled, because a vertex may lie half-way.
+            const glm::ivec2 p = 2 * (sample - above_.first * above_.stride) / above_.stride;
+            mesh_->fall.push_back(Samples::toFrame(parentSurface(p, sample) - samples_.at(sample)));
+        }
+    }
+
+    /// The parent's surface at a sample; `p` is its place on the parent's lattice in half steps.
+    Value parentSurface(glm::ivec2 p, glm::ivec2 sample) const {
+        const DiamondShape root = above_.diamond(glm::ivec2(above_.cells / 2));
+        const glm::ivec2 side = 2 * root.corner[2] - 2 * root.corner[0];
+        const bool inFirst =
+            crossProduct(side, p - 2 * root.corner[0]) * crossProduct(side, 2 * root.corner[1] - 2 * root.corner[0]) >= 0;
+        glm::ivec2 first = root.corner[0], apex = root.corner[inFirst ? 1 : 3], last = root.corner[2];
+        for (;;) {
+            const glm::ivec2 sum = first + last;
+            if ((sum.x | sum.y) & 1) break;
+            const glm::ivec2 middle = sum / 2;
+            if (!parent_->active[above_.place(middle)]) break;
+            // On the side of `first` or of `last` of the line from the apex to the middle.
+            const glm::ivec2 edge = last - first, from = p - 2 * middle;
+            const bool nearFirst = edge.x * from.x + edge.y * from.y < 0;
+            last = nearFirst ? first : last;
+            first = apex;
+            apex = middle;
+        }
+        const auto plane = planeThrough(samples_, above_.sampleAt(first), above_.sampleAt(apex), above_.sampleAt(last));
+        const Value value = plane.at(sample);
+        return Samples::length(value) < kInfinity ? value : samples_.at(sample);
+    }
+
+    Samples samples_;
+    Lattice lattice_, above_;  ///< the tile's and its parent's
+    HoleMap holes_;
+    const TileMesh* parent_;
+    std::shared_ptr<TileMesh> mesh_;
+    std::vector<float> deviation_;         ///< by place: of the diamond's triangles that lie in the tile
+    std::vector<std::uint16_t> vertexAt_;  ///< by place
+};
+
+}  // namespace
+
+int TileTree::rootLevel() const {
+    int level = leafLevel() + 1;
+    while (extent(level) < std::max(columns, rows) - 1) level += 2;
+    return level;
+}
+
+int TileTree::leafLevel() const {
+    int level = 0;
+    while (extent(level) > kSmallest) level -= 2;
+    return level;
+}
+
+std::size_t TileMesh::bytes() const {
+    std::size_t total = sizeof(TileMesh) + at.capacity() * sizeof(at[0]) + fall.capacity() * sizeof(fall[0]) +
+                        indices.capacity() * sizeof(indices[0]) + active.capacity();
+    for (const auto& side : border) total += side.capacity() * sizeof(side[0]);
+    return total;
+}
+
+namespace {
+
+template <class Samples>
+TilePair buildWith(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent) {
+    TileBuilder<Samples> builder(samples, tree, id, parent);
+    TilePair pair{builder.result(), nullptr};
+    if (!id.hasFourChildren())
+        pair.child = TileBuilder<Samples>(samples, tree, id.child(0), pair.tile.get(), builder.takeMeasured()).result();
+    return pair;
+}
+
+}  // namespace
+
+TilePair buildTile(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent) {
+    return samples.isRegular() ? buildWith<HeightSamples>(samples, tree, id, parent)
+                               : buildWith<PointSamples>(samples, tree, id, parent);
+}
+
+}  // namespace terrain

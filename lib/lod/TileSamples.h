@@ -1,0 +1,81 @@
+// The samples that tiles are built from, in other threads and after the traversal that brought them.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "height/SampleGrid.h"
+
+namespace terrain {
+
+/// Samples in the frame of a grid, immutable, in memory that lasts: heights of a regular grid, points of a curved one.
+class TileSamples {
+public:
+    /// `owner` keeps the grid's memory; without it, or where heights do not lie one behind the other, they are copied.
+    TileSamples(const SampleGrid& grid, bool hasHoles, std::shared_ptr<const void> owner);
+
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    bool isRegular() const { return points_.empty(); }
+    const float* heightRow(int row) const { return heights_ + std::size_t(row) * pitch_; }
+    const glm::vec3* pointRow(int row) const { return points_.data() + std::size_t(row) * std::size_t(columns_); }
+    bool hasHoles() const { return hasHoles_; }
+    bool isHole(int column, int row) const {
+        if (isRegular()) return !std::isfinite(heightRow(row)[column]);
+        const glm::vec3& p = pointRow(row)[column];
+        return !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+    }
+    /// Bytes of copies.
+    std::size_t bytes() const { return copy_.capacity() * sizeof(float) + points_.capacity() * sizeof(glm::vec3); }
+
+private:
+    int columns_;
+    int rows_;
+    bool hasHoles_;
+    std::shared_ptr<const void> owner_;
+    const float* heights_ = nullptr;
+    std::size_t pitch_ = 0;
+    std::vector<float> copy_;
+    std::vector<glm::vec3> points_;
+};
+
+/// What differs between heights and points where a surface is compared with its samples.
+struct HeightSamples {
+    using Value = float;
+    const TileSamples& samples;
+    float at(glm::ivec2 p) const { return samples.heightRow(p.y)[p.x]; }
+    static float length(float v) { return std::fabs(v); }
+    static glm::vec3 toFrame(float v) { return {0.0f, 0.0f, v}; }
+    /// Largest distance of samples [first, last] of a row from start + i * step.
+    float rowDeviation(int row, int first, int last, float start, float step) const {
+        const float* sample = samples.heightRow(row) + first;
+        float deviation = 0.0f;
+#pragma omp simd reduction(max : deviation)
+        for (int i = 0; i <= last - first; ++i) {
+            const float difference = std::fabs(sample[i] - (start + float(i) * step));
+            deviation = deviation > difference ? deviation : difference;
+        }
+        return deviation;
+    }
+};
+
+struct PointSamples {
+    using Value = glm::vec3;
+    const TileSamples& samples;
+    glm::vec3 at(glm::ivec2 p) const { return samples.pointRow(p.y)[p.x]; }
+    static float length(const glm::vec3& v) { return glm::length(v); }
+    static glm::vec3 toFrame(const glm::vec3& v) { return v; }
+    float rowDeviation(int row, int first, int last, const glm::vec3& start, const glm::vec3& step) const {
+        float deviation = 0.0f;
+        for (int i = 0; i <= last - first; ++i)
+            deviation = std::max(deviation, glm::length(samples.pointRow(row)[first + i] - (start + float(i) * step)));
+        return deviation;
+    }
+};
+
+}  // namespace terrain
