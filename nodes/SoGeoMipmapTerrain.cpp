@@ -44,7 +44,7 @@
 */
 /*!
   \var SoSFBool SoGeoMipmapTerrain::morphing
-  Whether vertices slide from one level to the next, so that nothing pops. It begins at 0.9 pixelError, and the error stays within pixelError
+  Whether vertices slide from one level to the next, so that nothing pops. It begins at 0.95 pixelError, and the error stays within pixelError
   all the while. Neighbours differ by one level at most then. Default TRUE.
 */
 

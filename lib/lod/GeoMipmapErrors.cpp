@@ -156,10 +156,10 @@ void GeoMipmapErrors::build(const SampleGrid& grid) {
         for (int column = 0; column < layout_.blockColumns;) {
             // Blocks of one shape together: those up to the last column.
             const int last = layout_.blockColumns - 1, count = column == last ? 1 : std::min(int(kLanes), last - column);
-            const std::size_t first = std::size_t(row) * std::size_t(layout_.blockColumns) + std::size_t(column);
-            const GeoMipmapShape& block = shape(first);
+            const std::size_t first = layout_.block(column, row);
+            const GeoMipmapShape& block = shape(column, row);
             const Program& program = programs[std::size_t(&block - shapes_.data())];
-            load(grid, first, count, lanes);
+            load(grid, {column, row}, count, lanes);
             for (std::size_t slot = 0; slot <= slots_; ++slot)
                 (regular_ ? deviate : deviateInSpace)(program.covered.data() + (slot ? program.ends[slot - 1] : 0),
                                                       program.covered.data() + program.ends[slot], lanes.values.data(),
@@ -172,10 +172,9 @@ void GeoMipmapErrors::build(const SampleGrid& grid) {
         }
 }
 
-void GeoMipmapErrors::load(const SampleGrid& grid, std::size_t first, int count, Lanes& lanes) {
-    const GeoMipmapShape& block = shape(first);
-    const int firstColumn = int(first % std::size_t(layout_.blockColumns)) * layout_.tileSize;
-    const int firstRow = int(first / std::size_t(layout_.blockColumns)) * layout_.tileSize;
+void GeoMipmapErrors::load(const SampleGrid& grid, glm::ivec2 first, int count, Lanes& lanes) {
+    const GeoMipmapShape& block = shape(first.x, first.y);
+    const int firstColumn = first.x * layout_.tileSize, firstRow = first.y * layout_.tileSize;
     for (int i = 0; i < count; ++i) {
         float low[3] = {kInfinity, kInfinity, kInfinity}, high[3] = {-kInfinity, -kInfinity, -kInfinity};
         bool holes = false;

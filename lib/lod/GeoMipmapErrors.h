@@ -28,8 +28,7 @@ public:
     GeoMipmapErrors(const SampleGrid& grid, int tileSize);
 
     const BlockLayout& layout() const { return layout_; }
-    const GeoMipmapShape& shape(std::size_t block) const {
-        const int column = int(block % std::size_t(layout_.blockColumns)), row = int(block / std::size_t(layout_.blockColumns));
+    const GeoMipmapShape& shape(int column, int row) const {
         return shapes_[(column + 1 == layout_.blockColumns ? 1u : 0u) + (row + 1 == layout_.blockRows ? 2u : 0u)];
     }
 
@@ -70,7 +69,7 @@ private:
     }
     Program programFor(const GeoMipmapShape& shape) const;
     void build(const SampleGrid& grid);
-    void load(const SampleGrid& grid, std::size_t first, int count, Lanes& lanes);
+    void load(const SampleGrid& grid, glm::ivec2 first, int count, Lanes& lanes);
     void store(const Program& program, const GeoMipmapShape& shape, std::size_t block, std::size_t lane, const Lanes& lanes);
     void storeHoles(const SampleGrid& grid, const GeoMipmapShape& shape, std::size_t block);
     void buildBounds();

@@ -29,7 +29,7 @@ namespace terrain {
 /// `triangleBudget` and `operationLimit` are not used. The mesh keeps no pointer to samples.
 class GeoMipmapMesh : public LodAlgorithm {
 public:
-    static constexpr float kMorphStart = 0.9f;
+    static constexpr float kMorphStart = 0.95f;
 
     explicit GeoMipmapMesh(std::shared_ptr<const GeoMipmapErrors> errors);
 
@@ -40,34 +40,36 @@ public:
     int level(int blockColumn, int blockRow) const;
 
 private:
-    static constexpr std::uint32_t kNone = 0xffffffffu;
-    static constexpr float kHidden = -1.0f;
+    static constexpr float kHidden = BlockDetails::kHidden;
 
     struct Turned;
+    struct Visit;
 
-    // Levels
-    void choose(const ScreenSpace& space, const Turned* turned, int boundsLevel, int column, int row);
-    void evaluate(std::uint32_t block, float factor);
-    bool fits(float error, float factor) const { return error == 0.0f || error * factor <= limit_; }
-    float fade(float error, float factor) const;
-    void settle();
-    void settleFinerThan(std::uint32_t block, int side);
-    void settleMorph(std::uint32_t block, int side);
-    void lower(std::uint32_t block, float detail);
-    void push(std::uint32_t block);
-    std::uint32_t neighbour(std::uint32_t block, int side) const;
-    bool canMorph(std::uint32_t block) const { return errors_->shape(block).isFull() && !errors_->hasHoles(block); }
-    int levelOf(std::uint32_t block) const { return int(detail_[block]); }
-
-    // Triangles
+    // GeoMipmapMesh.cpp: triangles
     void list();
     void emit(const SampleGrid& grid);
     void emitBlock(const SampleGrid& grid, const DrawnBlock& drawn);
     void emitTriangles(std::span<const GeoMipmapShape::Triangle> triangles, const std::uint32_t* vertices);
     void emitSolid(const SampleGrid& grid, const DrawnBlock& drawn, std::span<const GeoMipmapShape::Triangle> triangles,
                    const std::uint32_t* vertices);
-    float boundError(const ScreenSpace& space) const;
-    float boundSides(std::uint32_t block) const;
+
+    // GeoMipmapLevels.cpp: levels
+    void choose(const SampleGrid& grid);
+    void visit(const Visit& v, int boundsLevel, int column, int row, bool mayBeOutside);
+    bool isNextToView(const Visit& v, const Box& box) const;
+    void evaluate(const BlockAt& at, float factor);
+    bool fits(float error, float factor) const { return error == 0.0f || error * factor <= limit_; }
+    float fade(float error, float factor) const;
+    void settle();
+    void settleBlock(const BlockAt& at);
+    void settleSide(const BlockAt& at, int side);
+    void settleMorph(const BlockAt& at, int side);
+    void lower(const BlockAt& at, float detail);
+    void push(const BlockAt& at);
+    BlockAt neighbour(const BlockAt& at, int side) const;
+    bool canMorph(const BlockAt& at) const { return errors_->shape(at.column, at.row).isFull() && !errors_->hasHoles(at.number); }
+    float boundError() const;
+    float boundSides(const BlockAt& at) const;
 
     std::shared_ptr<const GeoMipmapErrors> errors_;
     BlockLayout layout_;
@@ -77,13 +79,16 @@ private:
     bool morphing_ = false;
     float limit_ = 0.0f;  ///< pixels up to which a level is taken
 
-    std::vector<float> detail_;          ///< by block; kHidden where nothing is drawn
-    std::vector<float> factor_;          ///< pixels that a unit of error takes on screen at most, by block
-    std::vector<bool> queued_;           ///< by block
-    std::vector<std::uint32_t> chosen_;  ///< blocks to be drawn
-    std::vector<std::uint32_t> queue_;
-    std::vector<DrawnBlock> drawn_, drawnBefore_;
-    std::vector<std::uint32_t> indices_;
+    BlockDetails detail_;
+    std::vector<float>
+        factor_;  ///< by block: pixels that a unit of error takes on screen at most; below 0: the same outside of the view
+    std::vector<bool> queued_;  ///< by block
+    /// Blocks to be drawn; while morphing, with those around them, so that nothing jumps when they come into view.
+    std::vector<BlockAt> chosen_;
+    std::vector<BlockAt> queue_;
+    std::vector<DrawnBlock> drawn_, drawnBefore_, sliding_;
+    std::vector<std::uint32_t> indices_;  ///< the first indexCount_ are in use
+    std::size_t indexCount_ = 0;
     SelectionReport report_;
 };
 

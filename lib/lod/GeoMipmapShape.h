@@ -24,9 +24,19 @@ struct BlockLayout {
     int blockColumns = 1;
     int blockRows = 1;
 
+    std::size_t block(int column, int row) const { return std::size_t(row) * std::size_t(blockColumns) + std::size_t(column); }
     std::size_t blockCount() const { return std::size_t(blockColumns) * std::size_t(blockRows); }
     int width(int blockColumn) const { return blockColumn + 1 < blockColumns ? tileSize : columns - 1 - blockColumn * tileSize; }
     int height(int blockRow) const { return blockRow + 1 < blockRows ? tileSize : rows - 1 - blockRow * tileSize; }
+};
+
+/// A block of a layout.
+struct BlockAt {
+    std::uint32_t number = 0;
+    std::uint16_t column = 0;
+    std::uint16_t row = 0;
+
+    bool operator==(const BlockAt&) const = default;
 };
 
 /// The triangles of a block of width x height cells at all levels, counter-clockwise, as places in an array of samples with `pitch`

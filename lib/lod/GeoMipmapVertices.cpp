@@ -12,25 +12,22 @@ GeoMipmapVertices::GeoMipmapVertices(std::shared_ptr<const GeoMipmapErrors> erro
     firstVertical_ = firstHorizontal_ + columns * (rows + 1);
     firstInner_ = firstVertical_ + (columns + 1) * rows;
     ranges_.resize(firstInner_ + columns * rows);
+    states_.resize(columns * rows);
     const std::size_t pitch = std::size_t(GeoMipmapShape::pitch(layout_.exponent));
     ids_.resize(pitch * pitch);
 }
 
-glm::ivec2 GeoMipmapVertices::blockAt(std::uint32_t block) const {
-    return {int(block % std::uint32_t(layout_.blockColumns)), int(block / std::uint32_t(layout_.blockColumns))};
-}
-
-std::uint32_t GeoMipmapVertices::sideRange(glm::ivec2 block, int side) const {
-    switch (side) {
-    case GeoMipmapShape::Bottom:
-        return horizontalRange(block);
-    case GeoMipmapShape::Right:
-        return verticalRange({block.x + 1, block.y});
-    case GeoMipmapShape::Top:
-        return horizontalRange({block.x, block.y + 1});
-    default:
-        return verticalRange(block);
-    }
+std::array<std::uint32_t, 9> GeoMipmapVertices::rangesOf(const BlockAt& at) const {
+    const int column = at.column, row = at.row;
+    return {cornerRange(column, row),
+            cornerRange(column + 1, row),
+            cornerRange(column, row + 1),
+            cornerRange(column + 1, row + 1),
+            sideRange(at, 0),
+            sideRange(at, 1),
+            sideRange(at, 2),
+            sideRange(at, 3),
+            innerRange(at)};
 }
 
 /// Position of a line of so many cells' extent, by its number from 0; the last is at the end.
@@ -67,21 +64,26 @@ glm::ivec2 GeoMipmapVertices::sampleOf(const Extent& e, int level, int number) c
     return e.from + glm::ivec2(e.cells.x ? lineAt(line.x, e.cells.x, level) : 0, e.cells.y ? lineAt(line.y, e.cells.y, level) : 0);
 }
 
-void GeoMipmapVertices::use(std::uint32_t number, std::uint8_t level) {
+void GeoMipmapVertices::use(const SampleGrid& grid, std::uint32_t number, std::uint8_t level) {
     Range& range = ranges_[number];
-    range.frame = frame_;
+    ++range.users;
     if (range.level == level) return;
-    if (range.level == kUnused)
-        used_.push_back(number);
-    else
-        release(range, number);
+    if (range.level != kUnused) release(number);
     range.level = level;
-    added_.push_back(number);
+    allocate(grid, number);
 }
 
-void GeoMipmapVertices::release(Range& range, std::uint32_t number) {
+void GeoMipmapVertices::unuse(std::uint32_t number) {
+    if (--ranges_[number].users == 0) emptied_.push_back(number);
+}
+
+void GeoMipmapVertices::release(std::uint32_t number) {
+    Range& range = ranges_[number];
     const Extent e = extent(number, range.level);
-    if (const int size = e.count.x * e.count.y; size > 0) free_[std::uint32_t(size)].push_back(range.first);
+    if (const std::uint32_t size = std::uint32_t(e.count.x * e.count.y); size > 0) {
+        free_[size].push_back(range.first);
+        drawnVertices_ -= size;
+    }
     range.level = kUnused;
 }
 
@@ -90,6 +92,7 @@ void GeoMipmapVertices::allocate(const SampleGrid& grid, std::uint32_t number) {
     const Extent e = extent(number, range.level);
     const std::uint32_t size = std::uint32_t(e.count.x * e.count.y);
     if (size == 0) return;
+    drawnVertices_ += size;
     std::vector<std::uint32_t>& fitting = free_[size];
     if (fitting.empty()) {
         range.first = std::uint32_t(positions_.size());
@@ -109,86 +112,102 @@ void GeoMipmapVertices::place(const SampleGrid& grid, std::uint32_t number, bool
         const glm::ivec2 sample = sampleOf(e, range.level, i);
         const std::uint32_t vertex = range.first + std::uint32_t(i);
         // What lies in a hole is part of a range, but of no triangle.
-        positions_[vertex] = grid.isHole(sample.x, sample.y) ? glm::vec3(0.0f) : grid.position(sample.x, sample.y);
+        const glm::vec3 p = grid.position(sample.x, sample.y);
+        positions_[vertex] = std::isfinite(p.x + p.y + p.z) ? p : glm::vec3(0.0f);
         if (!isNew) continue;
         samples_[vertex] = std::uint32_t(grid.index(sample.x, sample.y));
         newVertices_.push_back(vertex);
     }
 }
 
-void GeoMipmapVertices::update(const SampleGrid& grid, std::span<const DrawnBlock> blocks) {
-    ++frame_;
-    added_.clear();
-    for (const DrawnBlock& drawn : blocks) {
-        const glm::ivec2 at = blockAt(drawn.block);
-        use(cornerRange(at), 0);
-        use(cornerRange({at.x + 1, at.y}), 0);
-        use(cornerRange({at.x, at.y + 1}), 0);
-        use(cornerRange({at.x + 1, at.y + 1}), 0);
-        for (int side = 0; side < 4; ++side) use(sideRange(at, side), drawn.border[std::size_t(side)]);
-        use(innerRange(drawn.block), drawn.level);
+void GeoMipmapVertices::update(const SampleGrid& grid, std::span<const DrawnBlock> blocks, std::span<const DrawnBlock> before) {
+    ++update_;
+    emptied_.clear();
+    // Ranges of sizes that are not needed any more leave gaps, and all of the pool goes to GL: start afresh now and then.
+    if (positions_.size() > drawnVertices_ + drawnVertices_ / 4 + 1024) {
+        forget(before);
+        before = {};
     }
-    std::erase_if(used_, [this](std::uint32_t number) {
-        Range& range = ranges_[number];
-        if (range.frame == frame_) return false;
-        release(range, number);
-        return true;
-    });
-    for (const std::uint32_t number : added_) allocate(grid, number);
+    const auto isAsBefore = [this](const DrawnBlock& drawn) {
+        const State& state = states_[drawn.at.number];
+        return state.drawn && state.level == drawn.level && state.border == drawn.border;
+    };
+    for (const DrawnBlock& drawn : blocks)
+        if (isAsBefore(drawn)) states_[drawn.at.number].update = update_;
+    for (const DrawnBlock& drawn : before) {
+        State& state = states_[drawn.at.number];
+        if (state.update == update_) continue;
+        state.drawn = false;
+        for (const std::uint32_t range : rangesOf(drawn.at)) unuse(range);
+    }
+    for (const DrawnBlock& drawn : blocks) {
+        State& state = states_[drawn.at.number];
+        if (state.drawn) continue;
+        state = {drawn.level, drawn.border, true, update_};
+        const std::array<std::uint32_t, 9> ranges = rangesOf(drawn.at);
+        for (std::size_t corner = 0; corner < 4; ++corner) use(grid, ranges[corner], 0);
+        for (std::size_t side = 0; side < 4; ++side) use(grid, ranges[4 + side], drawn.border[side]);
+        use(grid, ranges[8], drawn.level);
+    }
+    for (const std::uint32_t number : emptied_)
+        if (ranges_[number].users == 0 && ranges_[number].level != kUnused) release(number);
+}
+
+void GeoMipmapVertices::forget(std::span<const DrawnBlock> blocks) {
+    for (const DrawnBlock& drawn : blocks) {
+        states_[drawn.at.number] = {};
+        for (const std::uint32_t number : rangesOf(drawn.at)) ranges_[number] = {};
+    }
+    positions_.clear();
+    samples_.clear();
+    free_.clear();
+    moved_.clear();
+    drawnVertices_ = 0;
 }
 
 const std::uint32_t* GeoMipmapVertices::of(const DrawnBlock& drawn) {
-    const glm::ivec2 at = blockAt(drawn.block);
-    const int width = layout_.width(at.x), height = layout_.height(at.y), pitch = GeoMipmapShape::pitch(layout_.exponent);
+    const int column = drawn.at.column, row = drawn.at.row;
+    const int width = layout_.width(column), height = layout_.height(row), pitch = GeoMipmapShape::pitch(layout_.exponent);
     const auto first = [this](std::uint32_t number) { return ranges_[number].first; };
-    ids_[0] = first(cornerRange(at));
-    ids_[std::size_t(width)] = first(cornerRange({at.x + 1, at.y}));
-    ids_[std::size_t(height * pitch)] = first(cornerRange({at.x, at.y + 1}));
-    ids_[std::size_t(height * pitch + width)] = first(cornerRange({at.x + 1, at.y + 1}));
+    ids_[0] = first(cornerRange(column, row));
+    ids_[std::size_t(width)] = first(cornerRange(column + 1, row));
+    ids_[std::size_t(height * pitch)] = first(cornerRange(column, row + 1));
+    ids_[std::size_t(height * pitch + width)] = first(cornerRange(column + 1, row + 1));
     for (int side = 0; side < 4; ++side) {
         if (drawn.border[std::size_t(side)] == layout_.exponent) continue;
         const bool horizontal = side % 2 == 0;
         const int step = 1 << drawn.border[std::size_t(side)], start = side == GeoMipmapShape::Top     ? height * pitch
                                                                        : side == GeoMipmapShape::Right ? width
                                                                                                        : 0;
-        std::uint32_t vertex = first(sideRange(at, side));
+        std::uint32_t vertex = first(sideRange(drawn.at, side));
         for (int line = step; line < (horizontal ? width : height); line += step)
             ids_[std::size_t(start + line * (horizontal ? 1 : pitch))] = vertex++;
     }
     if (drawn.level == layout_.exponent) return ids_.data();
     const int step = 1 << drawn.level;
-    std::uint32_t vertex = first(innerRange(drawn.block));
+    std::uint32_t vertex = first(innerRange(drawn.at));
     for (int row = step; row < height; row += step)
         for (int column = step; column < width; column += step) ids_[std::size_t(row * pitch + column)] = vertex++;
     return ids_.data();
 }
 
-bool GeoMipmapVertices::morph(const SampleGrid& grid, std::span<const DrawnBlock> blocks, const std::vector<float>& detail) {
+bool GeoMipmapVertices::morph(const SampleGrid& grid, std::span<const DrawnBlock> sliding, const BlockDetails& detail) {
     const bool anyBefore = !moved_.empty();
     for (const std::uint32_t number : moved_)
         if (ranges_[number].level != kUnused) place(grid, number, false);
     moved_.clear();
-    // Borders first: what is inside stands between them.
-    for (const DrawnBlock& drawn : blocks) {
-        const glm::ivec2 at = blockAt(drawn.block);
+    // Borders first: what is inside stands between them. Each slides with the coarser of its blocks.
+    for (const DrawnBlock& drawn : sliding)
         for (int side = 0; side < 4; ++side) {
-            const float beyond = detailBeyond(detail, at, side);
-            // Each border once: from the block whose lower or left side it is, if that is drawn.
-            if (beyond >= 0.0f && (side == GeoMipmapShape::Right || side == GeoMipmapShape::Top)) continue;
-            const float coarse = std::max(detail[drawn.block], beyond) - float(drawn.border[std::size_t(side)]);
-            if (coarse > 0.0f) morphBorder(grid, sideRange(at, side), coarse);
+            const float own = detail[drawn.at], beyond = detail.beyond(drawn.at, side);
+            const bool isCoarser =
+                own > beyond || (own == beyond && (side == GeoMipmapShape::Bottom || side == GeoMipmapShape::Left));
+            const std::uint32_t range = sideRange(drawn.at, side);
+            if (isCoarser && ranges_[range].level != kUnused) morphBorder(grid, range, own - float(drawn.level));
         }
-    }
-    for (const DrawnBlock& drawn : blocks)
-        if (const float coarse = detail[drawn.block] - float(drawn.level); coarse > 0.0f) morphInner(grid, drawn, coarse);
+    for (const DrawnBlock& drawn : sliding)
+        if (states_[drawn.at.number].drawn) morphInner(grid, drawn, detail[drawn.at] - float(drawn.level));
     return anyBefore || !moved_.empty();
-}
-
-float GeoMipmapVertices::detailBeyond(const std::vector<float>& detail, glm::ivec2 block, int side) const {
-    constexpr glm::ivec2 kStep[4] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
-    const glm::ivec2 at = block + kStep[side];
-    if (at.x < 0 || at.y < 0 || at.x >= layout_.blockColumns || at.y >= layout_.blockRows) return -1.0f;
-    return detail[std::size_t(at.y) * std::size_t(layout_.blockColumns) + std::size_t(at.x)];
 }
 
 void GeoMipmapVertices::morphBorder(const SampleGrid& grid, std::uint32_t number, float coarse) {
@@ -207,7 +226,7 @@ void GeoMipmapVertices::morphBorder(const SampleGrid& grid, std::uint32_t number
 
 void GeoMipmapVertices::morphInner(const SampleGrid& grid, const DrawnBlock& drawn, float coarse) {
     const std::uint32_t* ids = of(drawn);
-    const glm::ivec2 from = blockAt(drawn.block) * layout_.tileSize;
+    const glm::ivec2 from = glm::ivec2(drawn.at.column, drawn.at.row) * layout_.tileSize;
     const int step = 1 << drawn.level, cells = layout_.tileSize >> drawn.level, pitch = GeoMipmapShape::pitch(layout_.exponent);
     const bool last = drawn.level + 1 == layout_.exponent;
     for (int row = 1; row < cells; ++row)
@@ -215,7 +234,7 @@ void GeoMipmapVertices::morphInner(const SampleGrid& grid, const DrawnBlock& dra
             if (row % 2 == 0 && column % 2 == 0) continue;
             // Which edge of the next level the vertex stands on.
             glm::ivec2 along(column % 2, row % 2);
-            if (along.x && along.y && (last ? errors_->hasOtherDiagonal(drawn.block) : (column / 2 + row / 2) % 2 == 1))
+            if (along.x && along.y && (last ? errors_->hasOtherDiagonal(drawn.at.number) : (column / 2 + row / 2) % 2 == 1))
                 along.y = -1;
             const glm::ivec2 p = glm::ivec2(column, row) * step, a = p - along * step, b = p + along * step;
             const auto truth = [&](glm::ivec2 at) { return grid.position(from.x + at.x, from.y + at.y); };
@@ -223,13 +242,13 @@ void GeoMipmapVertices::morphInner(const SampleGrid& grid, const DrawnBlock& dra
             positions_[vertex(p)] = (positions_[vertex(a)] + positions_[vertex(b)]) * 0.5f +
                                     (1.0f - coarse) * (truth(p) - (truth(a) + truth(b)) * 0.5f);
         }
-    moved_.push_back(innerRange(drawn.block));
+    moved_.push_back(innerRange(drawn.at));
 }
 
 std::size_t GeoMipmapVertices::bytes() const {
     const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
-    std::size_t total = held(ranges_) + held(used_) + held(added_) + held(moved_) + held(ids_) + held(positions_) + held(samples_) +
-                        held(newVertices_);
+    std::size_t total = held(ranges_) + held(states_) + held(emptied_) + held(moved_) + held(ids_) + held(positions_) +
+                        held(samples_) + held(newVertices_);
     for (const auto& [size, firsts] : free_) total += held(firsts);
     return total;
 }
