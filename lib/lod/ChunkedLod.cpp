@@ -25,7 +25,7 @@ std::shared_ptr<const TileMesh> buildByKey(const std::shared_ptr<TileFactory>& f
 ChunkedLod::ChunkedLod(const TerrainModel& model, const SampleGrid& grid, int tileCells, std::shared_ptr<const void> owner,
                        std::shared_ptr<TaskRunner> runner)
     : model_(model), tree_{grid.columns(), grid.rows(), tileCells},
-      samples_(std::make_shared<TileSamples>(grid, model.boxes->hasHoles(), std::move(owner))),
+      samples_(std::make_shared<TileSamples>(grid, *model.boxes, std::move(owner))),
       factory_(std::make_shared<TileFactory>(samples_, tree_)),
       cache_(std::move(runner), [factory = factory_](const TileKey& key) { return buildByKey(factory, key); }) {}
 

@@ -1,8 +1,6 @@
 // Builds tiles with their parents at hand, in any thread.
 #pragma once
 
-#include <cstddef>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -20,17 +18,12 @@ public:
     const TileTree& tree() const { return tree_; }
 
 private:
-    /// Children built along with their parents wait here to be asked for; the oldest of too many go.
-    static constexpr std::size_t kMostWaiting = 128;
-
     std::shared_ptr<const TileMesh> find(const TileId& id);
-    std::shared_ptr<const TileMesh> takeWaiting(const TileId& id);
 
     const std::shared_ptr<const TileSamples> samples_;
     const TileTree tree_;
     std::mutex mutex_;
     std::map<TileId, std::weak_ptr<const TileMesh>> tiles_;
-    std::deque<std::shared_ptr<const TileMesh>> waiting_;
 };
 
 }  // namespace terrain

@@ -16,8 +16,11 @@ constexpr std::uint16_t kNoPlace = 0xffff;
 /// Error of a tile relative to its parent's. Larger: more levels and tiles; smaller: more triangles, because errors fit distances
 /// less closely.
 constexpr float kFiner = 0.75f;
-/// Splits of the root's mesh before those that follow from them; from there on errors are halved from level to level.
-constexpr int kRootSplits = 300;
+/// Where the stride allows no smaller error than so much of the parent's, a tile is a copy of that part of its parent: between them
+/// it could not morph before its own children take its place.
+constexpr float kLeastGain = 0.95f;
+/// Error of the root's mesh, as far as its stride allows, relative to the range of heights.
+constexpr float kRootError = 0.125f;
 
 std::int64_t crossProduct(glm::ivec2 a, glm::ivec2 b) {
     return std::int64_t(a.x) * b.y - std::int64_t(a.y) * b.x;
@@ -63,9 +66,10 @@ struct Edge {
     }
 };
 
-/// Largest deviation of the samples in a triangle from the plane through its corners.
+/// Largest deviation of the samples in a triangle from the plane through its corners; where it exceeds `enough`, any value that
+/// does.
 template <class Samples>
-float triangleDeviation(const Samples& samples, glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
+float triangleDeviation(const Samples& samples, glm::ivec2 a, glm::ivec2 b, glm::ivec2 c, float enough) {
     if (crossProduct(b - a, c - a) == 0) return 0.0f;
     const auto plane = planeThrough(samples, a, b, c);
     if (b.y < a.y) std::swap(a, b);
@@ -74,7 +78,7 @@ float triangleDeviation(const Samples& samples, glm::ivec2 a, glm::ivec2 b, glm:
     const Edge whole(a, c), lower(a, b), upper(b, c);
     const bool bendsRight = crossProduct(c - a, b - a) < 0;
     float deviation = 0.0f;
-    for (int row = a.y; row <= c.y; ++row) {
+    for (int row = a.y; row <= c.y && deviation <= enough; ++row) {
         const Edge& other = row < b.y || upper.rows == 0 ? lower : upper;
         // Along a level edge at the bottom or the top all of it counts.
         int first = bendsRight ? whole.after(row) : (other.rows == 0 ? b.x : other.after(row));
@@ -106,17 +110,6 @@ public:
         for (glm::ivec2& corner : d.corner) corner -= first;
         return d;
     }
-    /// Visits the centres of all diamonds of the tile's square, the finest first.
-    template <class Visit>
-    void forEachUpwards(Visit visit) const {
-        for (int s = 1; s < cells; s *= 2) {
-            for (int y = 0; y <= cells; y += s)
-                for (int x = (y & s) ? 0 : s; x <= cells; x += 2 * s) visit(glm::ivec2(x, y));
-            for (int y = s; y < cells; y += 2 * s)
-                for (int x = s; x < cells; x += 2 * s) visit(glm::ivec2(x, y));
-        }
-    }
-
     const int cells, stride;
     const glm::ivec2 first;
 
@@ -165,70 +158,89 @@ private:
 template <class Samples>
 class TileBuilder {
 public:
-    /// `measured`: what another tile of the same place and size has measured.
-    TileBuilder(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent,
-                std::vector<float> measured = {})
+    TileBuilder(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent)
         : samples_{samples}, lattice_(tree, id), above_(tree, id.parent()), holes_(samples, lattice_), parent_(parent),
-          mesh_(std::make_shared<TileMesh>()), deviation_(std::move(measured)) {
+          mesh_(std::make_shared<TileMesh>()) {
         mesh_->id = id;
         mesh_->latticeCells = lattice_.cells;
         if (parent) mesh_->parentError = parent->error;
         const bool isLeaf = id.level == tree.leafLevel();
-        if (deviation_.empty()) measure();
-        choose(isLeaf ? 0.0f : parent ? kFiner * parent->error : rootTarget());
-        vertexAt_.assign(lattice_.places(), kNoPlace);
-        emitAll();
+        target_ = isLeaf ? 0.0f : parent ? kFiner * parent->error : kRootError * samples.range();
+        build();
+        if (parent && mesh_->error > kLeastGain * parent->error) {
+            target_ = kInfinity;
+            build();
+        }
         findBorders();
         if (parent && !lattice_.isCut()) findFall();
     }
 
     std::shared_ptr<const TileMesh> result() const { return mesh_; }
-    std::vector<float> takeMeasured() { return std::move(deviation_); }
 
 private:
     using Value = typename Samples::Value;
 
-    float deviation(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) const {
+    float deviation(glm::ivec2 a, glm::ivec2 b, glm::ivec2 c, float enough) const {
         switch (holes_.state(a, b, c)) {
         case HoleMap::Empty:
             return 0.0f;
         case HoleMap::Mixed:
             return kInfinity;
         default:
-            return triangleDeviation(samples_, lattice_.sampleAt(a), lattice_.sampleAt(b), lattice_.sampleAt(c));
+            return triangleDeviation(samples_, lattice_.sampleAt(a), lattice_.sampleAt(b), lattice_.sampleAt(c), enough);
         }
     }
 
-    void measure() {
-        deviation_.assign(lattice_.places(), 0.0f);
-        lattice_.forEachUpwards([this](glm::ivec2 p) {
-            const DiamondShape d = lattice_.diamond(p);
-            float& worst = deviation_[lattice_.place(p)];
-            for (const glm::ivec2 apex : {d.corner[1], d.corner[3]})
-                if (lattice_.contains(apex)) worst = std::max(worst, deviation(d.corner[0], apex, d.corner[2]));
-        });
+    bool isCorner(glm::ivec2 p) const { return p.x % lattice_.cells == 0 && p.y % lattice_.cells == 0; }
+    float& deviationOf(glm::ivec2 middle, int half) { return deviation_[2 * lattice_.place(middle) + std::size_t(half)]; }
+
+    void build() {
+        refine();
+        vertexAt_.assign(lattice_.places(), kNoPlace);
+        mesh_->at.clear();
+        mesh_->indices.clear();
+        mesh_->error = 0.0f;
+        emitAll();
     }
 
-    float rootTarget() const {
-        std::vector<float> sorted = deviation_;
-        const std::size_t splits = std::min(sorted.size() - 1, std::size_t(kRootSplits));
-        std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(splits), sorted.end(), std::greater<float>());
-        return std::isfinite(sorted[splits]) ? sorted[splits] : 0.0f;
+    /// From the whole square down: what deviates too much is split, and so is what the parent has split, and what a split diamond
+    /// hangs on. Most of what is large deviates at once, so that all samples are looked at only about once, under the triangles
+    /// that stay.
+    void refine() {
+        mesh_->active.assign(lattice_.places(), 0);
+        deviation_.assign(2 * lattice_.places(), 0.0f);
+        const glm::ivec2 middle(lattice_.cells / 2);
+        open_ = {{middle, 0}, {middle, 1}};
+        if (parent_)
+            for (int y = 0; y <= lattice_.cells; ++y)
+                for (int x = 0; x <= lattice_.cells; ++x)
+                    if (isActiveInParent({x, y})) activate({x, y});
+        while (!open_.empty()) {
+            const OpenTriangle t = open_.back();
+            open_.pop_back();
+            if (mesh_->active[lattice_.place(t.middle)]) continue;
+            const DiamondShape d = lattice_.diamond(t.middle);
+            float& worst = deviationOf(t.middle, t.half);
+            worst = deviation(d.corner[0], d.corner[t.half ? 3 : 1], d.corner[2], target_);
+            if (worst > target_) activate(t.middle);
+        }
     }
 
-    /// What deviates too much is split, and so is what the parent has split, and what a split diamond hangs on.
-    void choose(float target) {
-        std::vector<std::uint8_t>& active = mesh_->active;
-        active.assign(lattice_.places(), 0);
-        lattice_.forEachUpwards([&](glm::ivec2 p) {
-            std::uint8_t& own = active[lattice_.place(p)];
-            if (deviation_[lattice_.place(p)] > target || isActiveInParent(p)) own = 1;
-            if (!own) return;
-            const DiamondShape d = lattice_.diamond(p);
-            // The apexes of the tile's own diagonal are its corners.
-            for (const glm::ivec2 apex : {d.corner[1], d.corner[3]})
-                if (lattice_.contains(apex)) active[lattice_.place(apex)] = 1;
-        });
+    void activate(glm::ivec2 p) {
+        if (isCorner(p) || mesh_->active[lattice_.place(p)]) return;
+        mesh_->active[lattice_.place(p)] = 1;
+        const DiamondShape d = lattice_.diamond(p);
+        for (int half = 0; half < 2; ++half) {
+            const glm::ivec2 apex = d.corner[half ? 3 : 1];
+            if (!lattice_.contains(apex)) continue;
+            activate(apex);
+            // The two halves of this triangle, whose right angle is at p.
+            for (const glm::ivec2 end : {d.corner[0], d.corner[2]}) {
+                const glm::ivec2 sum = apex + end;
+                if ((sum.x | sum.y) & 1) continue;
+                open_.push_back({sum / 2, lattice_.diamond(sum / 2).corner[1] == p ? 0 : 1});
+            }
+        }
     }
 
     bool isActiveInParent(glm::ivec2 p) const {
@@ -252,7 +264,7 @@ private:
             half(apex, middle, first);
             return;
         }
-        mesh_->error = std::max(mesh_->error, deviation_[lattice_.place(middle)]);
+        mesh_->error = std::max(mesh_->error, deviationOf(middle, lattice_.diamond(middle).corner[1] == apex ? 0 : 1));
         put(first, apex, last);
     }
 
@@ -260,7 +272,7 @@ private:
         const glm::ivec2 sum = first + last;
         if ((sum.x | sum.y) & 1) {
             // Nothing lies between: at full resolution such triangles are exact.
-            if (lattice_.stride > 1) mesh_->error = std::max(mesh_->error, deviation(first, apex, last));
+            if (lattice_.stride > 1) mesh_->error = std::max(mesh_->error, deviation(first, apex, last, kInfinity));
             put(first, apex, last);
         } else {
             emit(first, apex, last, sum / 2);
@@ -335,7 +347,13 @@ private:
     HoleMap holes_;
     const TileMesh* parent_;
     std::shared_ptr<TileMesh> mesh_;
-    std::vector<float> deviation_;         ///< by place: of the diamond's triangles that lie in the tile
+    struct OpenTriangle {
+        glm::ivec2 middle;  ///< of its longest edge
+        int half;           ///< of the diamond with that middle: 0 at q1, 1 at q3
+    };
+    float target_ = 0.0f;
+    std::vector<OpenTriangle> open_;       ///< not compared with the samples yet
+    std::vector<float> deviation_;         ///< by place, two halves: of triangles that were
     std::vector<std::uint16_t> vertexAt_;  ///< by place
 };
 
@@ -360,22 +378,10 @@ std::size_t TileMesh::bytes() const {
     return total;
 }
 
-namespace {
-
-template <class Samples>
-TilePair buildWith(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent) {
-    TileBuilder<Samples> builder(samples, tree, id, parent);
-    TilePair pair{builder.result(), nullptr};
-    if (!id.hasFourChildren())
-        pair.child = TileBuilder<Samples>(samples, tree, id.child(0), pair.tile.get(), builder.takeMeasured()).result();
-    return pair;
-}
-
-}  // namespace
-
-TilePair buildTile(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent) {
-    return samples.isRegular() ? buildWith<HeightSamples>(samples, tree, id, parent)
-                               : buildWith<PointSamples>(samples, tree, id, parent);
+std::shared_ptr<const TileMesh> buildTile(const TileSamples& samples, const TileTree& tree, const TileId& id,
+                                          const TileMesh* parent) {
+    if (samples.isRegular()) return TileBuilder<HeightSamples>(samples, tree, id, parent).result();
+    return TileBuilder<PointSamples>(samples, tree, id, parent).result();
 }
 
 }  // namespace terrain

@@ -72,12 +72,8 @@ struct TileMesh {
     std::size_t bytes() const;
 };
 
-/// A tile and, where it has one child of its own place and size, that one too: finding the errors is most of the work for both.
-struct TilePair {
-    std::shared_ptr<const TileMesh> tile, child;
-};
-
 /// Builds one tile. `parent` must be that of id, or null for the root. Any thread.
-TilePair buildTile(const TileSamples& samples, const TileTree& tree, const TileId& id, const TileMesh* parent);
+std::shared_ptr<const TileMesh> buildTile(const TileSamples& samples, const TileTree& tree, const TileId& id,
+                                          const TileMesh* parent);
 
 }  // namespace terrain

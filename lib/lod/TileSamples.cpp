@@ -4,8 +4,10 @@
 
 namespace terrain {
 
-TileSamples::TileSamples(const SampleGrid& grid, bool hasHoles, std::shared_ptr<const void> owner)
-    : columns_(grid.columns()), rows_(grid.rows()), hasHoles_(hasHoles), owner_(std::move(owner)) {
+TileSamples::TileSamples(const SampleGrid& grid, const BoxPyramid& boxes, std::shared_ptr<const void> owner)
+    : columns_(grid.columns()), rows_(grid.rows()), hasHoles_(boxes.hasHoles()), owner_(std::move(owner)) {
+    if (const BoxPyramid::Bounds& all = boxes.all(); !all.isEmpty())
+        range_ = grid.isRegular() ? all.high.z - all.low.z : glm::length(all.high - all.low);
     if (!grid.isRegular()) {
         points_.reserve(std::size_t(columns_) * std::size_t(rows_));
         for (int row = 0; row < rows_; ++row)

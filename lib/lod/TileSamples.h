@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "height/SampleGrid.h"
+#include "lod/BoxPyramid.h"
 
 namespace terrain {
 
@@ -17,7 +18,7 @@ namespace terrain {
 class TileSamples {
 public:
     /// `owner` keeps the grid's memory; without it, or where heights do not lie one behind the other, they are copied.
-    TileSamples(const SampleGrid& grid, bool hasHoles, std::shared_ptr<const void> owner);
+    TileSamples(const SampleGrid& grid, const BoxPyramid& boxes, std::shared_ptr<const void> owner);
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
@@ -25,6 +26,8 @@ public:
     const float* heightRow(int row) const { return heights_ + std::size_t(row) * pitch_; }
     const glm::vec3* pointRow(int row) const { return points_.data() + std::size_t(row) * std::size_t(columns_); }
     bool hasHoles() const { return hasHoles_; }
+    /// Between the lowest and the highest sample; of points, the size of their box.
+    float range() const { return range_; }
     bool isHole(int column, int row) const {
         if (isRegular()) return !std::isfinite(heightRow(row)[column]);
         const glm::vec3& p = pointRow(row)[column];
@@ -37,6 +40,7 @@ private:
     int columns_;
     int rows_;
     bool hasHoles_;
+    float range_ = 0.0f;
     std::shared_ptr<const void> owner_;
     const float* heights_ = nullptr;
     std::size_t pitch_ = 0;

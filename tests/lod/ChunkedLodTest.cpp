@@ -65,10 +65,12 @@ int openEdges(const SampleGrid& grid, const std::vector<GridTriangle>& triangles
     return open;
 }
 
-/// Where every sample in view is drawn, in pixels.
-std::map<std::uint32_t, glm::dvec2> drawnSamples(const SampleGrid& grid, const DrawList& list, const View& view)
+/// Where every sample in view is drawn, in pixels: those between two tiles by each of them.
+using DrawnSamples = std::map<std::uint32_t, std::vector<glm::dvec2>>;
+
+DrawnSamples drawnSamples(const SampleGrid& grid, const DrawList& list, const View& view)
 {
-    std::map<std::uint32_t, glm::dvec2> drawn;
+    DrawnSamples drawn;
     for (const GridTriangle& t : groundOf(grid, list)) {
         const glm::ivec2 low = glm::min(glm::min(t.corner[0], t.corner[1]), t.corner[2]);
         const glm::ivec2 high = glm::max(glm::max(t.corner[0], t.corner[1]), t.corner[2]);
@@ -81,7 +83,7 @@ std::map<std::uint32_t, glm::dvec2> drawnSamples(const SampleGrid& grid, const D
                 if (u < -1e-9 || v < -1e-9 || u + v > 1.0 + 1e-9) continue;
                 const glm::dvec3 a(list.positions[t.vertex[0]]), b(list.positions[t.vertex[1]]), c(list.positions[t.vertex[2]]);
                 const Projected found = project(view, a + u * (b - a) + v * (c - a));
-                if (found.inView) drawn[std::uint32_t(grid.index(column, row))] = found.pixel;
+                if (found.inView) drawn[std::uint32_t(grid.index(column, row))].push_back(found.pixel);
             }
     }
     return drawn;
@@ -197,19 +199,23 @@ struct Slow {
         ChunkedLod mesh(model, grid, 32, nullptr);
         LodSettings settings = completeSettings(2.0f);
         settings.geomorph = morphing;
-        std::map<std::uint32_t, glm::dvec2> before;
+        DrawnSamples before;
         double largest = 0.0;
         for (int frame = 0; frame < 200; ++frame) {
             const DrawList list = mesh.select(grid, view(frame), settings);
             const auto drawn = drawnSamples(grid, list, view(frame));
             if (frame > 0 && list.indicesChanged) {
                 ++changes;
-                for (const auto& [sample, pixel] : drawn) {
+                for (const auto& [sample, pixels] : drawn) {
                     const auto was = before.find(sample);
                     if (was == before.end()) continue;
                     const glm::dvec3 place(grid.position(int(sample) % grid.columns(), int(sample) / grid.columns()));
                     const glm::dvec2 own = project(view(frame), place).pixel - project(view(frame - 1), place).pixel;
-                    largest = std::max(largest, glm::length(pixel - was->second - own));
+                    for (const glm::dvec2& pixel : pixels) {
+                        double jump = 1e9;
+                        for (const glm::dvec2& old : was->second) jump = std::min(jump, glm::length(pixel - old - own));
+                        largest = std::max(largest, jump);
+                    }
                 }
             }
             before = drawn;
