@@ -24,7 +24,7 @@ const char* const moreHelp = R"(
 Level of detail
   -e, --pixel-error PX      greatest error on screen, in pixels (2)
   -r, --triangle-count N    most triangles; 0: no limit (roam)
-  -g, --tile-size N         samples along the side of a tile (tiled algorithms)
+  -g, --tile-size N         cells along the side of a tile (tiled algorithms)
   -c, --culling             switch frustum culling on. Without it a height map is drawn without culling; a scene file
                             keeps what it says
 

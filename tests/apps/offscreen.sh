@@ -11,7 +11,7 @@ colors() {
     tail -n +4 "$1" | od -An -v -t u1 -w3 | sort -u | wc -l
 }
 
-for algorithm in bruteforce roam indexedfaceset quadmesh; do
+for algorithm in bruteforce geomipmapping roam indexedfaceset quadmesh; do
     expect 0 "$TEST" -h "$SCRATCH/map.raw" -a "$algorithm" -c --offscreen=160x120 -v --frames 6 --output "$SCRATCH/$algorithm-%02d.ppm" \
         -p "$SCRATCH/$algorithm.csv" --stats --measure-error 2 --record "$SCRATCH/$algorithm-flight.csv"
     for i in 00 01 02 03 04 05; do
