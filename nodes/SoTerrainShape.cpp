@@ -294,7 +294,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.drawMilliseconds = millisecondsSince(start);
 
     statistics.triangles = view.renderer.triangles();
-    statistics.patches = view.renderer.triangles() > 0 ? 1 : 0;
+    statistics.patches = view.renderer.triangles() > 0 ? view.report.patches : 0;
     statistics.converged = view.report.converged;
     statistics.errorPixels = view.report.errorPixels;
     statistics.memoryBytes = grids.bytes() + views.memoryBytes();

@@ -59,6 +59,7 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
         indicesChanged = turned || !std::equal(drawn_.begin(), drawn_.end(), drawnBefore_.begin(), drawnBefore_.end(), isSame);
         if (indicesChanged) writeIndices();
         report_.triangles = std::uint32_t(indices_.size() / 3);
+        report_.patches = drawnTiles();
     }
     isFirst_ = false;
     DrawList list;
@@ -168,14 +169,15 @@ bool ChunkedLod::visitChildren(const TileId& id, float pixels) {
     return true;
 }
 
-float ChunkedLod::morphOf(const TileMesh& mesh, float parentPixels) const {
-    if (!settings_.geomorph || mesh.fall.empty() || !(mesh.parentError > 0.0f) || !std::isfinite(parentPixels)) return 1.0f;
-    if (parentPixels <= settings_.pixelError) return 0.0f;
+float ChunkedLod::parentShare(const TileMesh& mesh, float parentPixels) const {
+    if (!settings_.geomorph || mesh.fall.empty() || !(mesh.parentError > 0.0f) || !std::isfinite(parentPixels)) return 0.0f;
+    if (parentPixels <= settings_.pixelError) return 1.0f;
     const double ratio = double(mesh.error) / double(mesh.parentError);
     // A mesh no better than its parent's keeps the same error however it morphs.
     const double gain = ratio < 1.0 ? 1.0 - ratio : 0.25;
-    const double t = (1.0 - double(settings_.pixelError) / double(parentPixels)) / gain;
-    return std::min(1.0f, std::nextafter(float(t), 2.0f));
+    // A little less than the pixel error, so that rounding does not exceed it.
+    constexpr double kWithin = 1.0 - 1e-5;
+    return float(std::max(0.0, 1.0 - (1.0 - kWithin * double(settings_.pixelError) / double(parentPixels)) / gain));
 }
 
 bool ChunkedLod::draw(const TileId& id, const TileMesh& mesh, const Box& box, float parentPixels) {
@@ -184,11 +186,10 @@ bool ChunkedLod::draw(const TileId& id, const TileMesh& mesh, const Box& box, fl
         if (vertexBytes(mesh) > credit_) return false;
         credit_ -= vertexBytes(mesh);
     }
-    const float t = morphOf(mesh, parentPixels);
-    const double share = 1.0 - double(t);
-    const float error = t < 1.0f ? float(mesh.parentError * share + mesh.error * double(t)) : mesh.error;
+    const float share = parentShare(mesh, parentPixels);
+    const float error = share > 0.0f ? mesh.error * (1.0f - share) + mesh.parentError * share : mesh.error;
     if (!space_->isOutside(box)) report_.errorPixels = std::max(report_.errorPixels, space_->screenError(error, box));
-    drawn_.push_back({id, &mesh, t, 0});
+    drawn_.push_back({id, &mesh, share, 0});
     return true;
 }
 
@@ -218,9 +219,9 @@ void ChunkedLod::place(const SampleGrid& grid) {
 
 void ChunkedLod::writePositions(const SampleGrid& grid, Tile& tile, Slot& slot) {
     const TileMesh& mesh = *tile.mesh;
-    if (slot.morph == tile.morph) return;
-    const bool isNew = slot.morph < 0.0f;
-    slot.morph = tile.morph;
+    if (slot.parentShare == tile.parentShare) return;
+    const bool isNew = slot.parentShare < 0.0f;
+    slot.parentShare = tile.parentShare;
     positionsChanged_ = true;
     if (isNew)
         for (std::uint32_t i = 0; i < slot.count; ++i) {
@@ -229,15 +230,14 @@ void ChunkedLod::writePositions(const SampleGrid& grid, Tile& tile, Slot& slot) 
             samplesOf_[slot.base + i] = std::uint32_t(grid.index(at.x, at.y));
             newVertices_.push_back(slot.base + i);
         }
-    if (tile.morph >= 1.0f) {
+    if (tile.parentShare == 0.0f) {
         std::copy_n(targets_.begin() + slot.base, slot.count, positions_.begin() + slot.base);
         return;
     }
     const glm::vec3 up(grid.localFromFrame()[2]);
-    const float share = 1.0f - tile.morph;
     for (std::uint32_t i = 0; i < slot.count; ++i) {
         const glm::vec3 fall = grid.isRegular() ? up * mesh.fall[i].z : mesh.fall[i];
-        positions_[slot.base + i] = targets_[slot.base + i] + fall * share;
+        positions_[slot.base + i] = targets_[slot.base + i] + fall * tile.parentShare;
     }
 }
 

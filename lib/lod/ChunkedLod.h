@@ -49,13 +49,13 @@ private:
     struct Tile {
         TileId id;
         const TileMesh* mesh = nullptr;
-        float morph = 1.0f;
-        std::uint32_t base = 0;  ///< first vertex in the pool
+        float parentShare = 0.0f;  ///< 1 - t
+        std::uint32_t base = 0;    ///< first vertex in the pool
     };
     struct Slot {
         std::uint32_t base = 0;
         std::uint32_t count = 0;
-        float morph = -1.0f;
+        float parentShare = -1.0f;
         bool isDrawn = false;
     };
     struct BorderLine {
@@ -80,7 +80,7 @@ private:
     void prefetchChildren(const TileId& id, float pixels);
     bool visitChildren(const TileId& id, float pixels);
     bool draw(const TileId& id, const TileMesh& mesh, const Box& box, float parentPixels);
-    float morphOf(const TileMesh& mesh, float parentPixels) const;
+    float parentShare(const TileMesh& mesh, float parentPixels) const;
 
     // The list
     void place(const SampleGrid& grid);
@@ -107,7 +107,7 @@ private:
     std::map<TileId, Slot> slots_;
 
     RangePool pool_;
-    std::vector<glm::vec3> positions_, targets_;  ///< by vertex: drawn, and where t is 1
+    std::vector<glm::vec3> positions_, targets_;  ///< by vertex: drawn, and with t = 1
     std::vector<std::uint32_t> samplesOf_;
     std::vector<std::uint32_t> newVertices_, indices_;
     bool positionsChanged_ = false;

@@ -1,5 +1,7 @@
 #include "lod/TileFactory.h"
 
+#include <algorithm>
+
 namespace terrain {
 
 std::shared_ptr<const TileMesh> TileFactory::find(const TileId& id) {
@@ -17,6 +19,10 @@ std::shared_ptr<const TileMesh> TileFactory::build(const TileId& id) {
     auto mesh = buildTile(*samples_, tree_, id, parent.get());
     const std::lock_guard lock(mutex_);
     tiles_[id] = mesh;
+    if (tiles_.size() > 2 * kept_) {
+        std::erase_if(tiles_, [](const auto& entry) { return entry.second.expired(); });
+        kept_ = std::max(kept_, tiles_.size());
+    }
     return mesh;
 }
 

@@ -1,6 +1,7 @@
 // Builds tiles with their parents at hand, in any thread.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,6 +25,7 @@ private:
     const TileTree tree_;
     std::mutex mutex_;
     std::map<TileId, std::weak_ptr<const TileMesh>> tiles_;
+    std::size_t kept_ = 512;  ///< of tiles_, after those that are gone were last removed
 };
 
 }  // namespace terrain
