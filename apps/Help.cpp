@@ -46,7 +46,7 @@ Output
       --measure-error K     every K frames measure the error on screen of every sample in view
       --offscreen[=WxH]     no window and no display (1024x768). One frame, unless -v, --flight or --frames asks for more. Without
                             -p, --stats, --measure-error and --output it prints one line of figures
-      --output NAME         write the frames of --offscreen: frame-%04d.png
+      --output NAME         write the frames of --offscreen: frame-%04d.png. They wait for tiles, and so do those of --measure-error
   -f, --full-screen         start with a full screen
       --help, --version
 

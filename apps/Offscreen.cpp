@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <thread>
 
 #include <Inventor/SbViewportRegion.h>
@@ -23,6 +24,8 @@ using terrain::Error;
 using terrain::HeadlessContext;
 
 namespace {
+
+constexpr double patienceMs = 10000.0;
 
 class OffscreenRun {
 public:
@@ -49,6 +52,17 @@ public:
         draw();
         glFinish();
         return nowMs() - start;
+    }
+
+    /// Draws until nothing is missing. False when that takes too long.
+    bool complete() {
+        const double end = nowMs() + patienceMs;
+        while (!scene_.isComplete()) {
+            if (nowMs() > end) return false;
+            drawTimed();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return true;
     }
 
     std::optional<Error> frame(RunLog& log, int frame, double timeMs) {
@@ -101,6 +115,10 @@ std::optional<Error> runOffscreen(const Options& options, Scene& scene, double s
     OffscreenRun run(options, scene, *context.value());
     const double loaded = nowMs() - startedMs;
     log.value().setStart(loaded, run.drawTimed());
+    if (!animated && !run.complete()) {
+        std::fprintf(stderr, "SoTerrainTest: expected a complete picture within %.0f s, found parts of it still coarser\n",
+                     patienceMs * 1e-3);
+    }
     auto problem = animated ? run.animate(log.value(), animation.value()) : run.frame(log.value(), 0, 0.0);
     if (problem) return problem;
     return log.value().finish(options, scene, context.value()->renderer());

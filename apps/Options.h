@@ -25,7 +25,7 @@ struct Options {
     std::optional<double> frameTime;          ///< -F, milliseconds
     std::optional<double> pixelError;         ///< -e, pixels
     std::optional<int> triangleCount;         ///< -r
-    std::optional<int> tileSize;              ///< -g, samples
+    std::optional<int> tileSize;              ///< -g, cells
     std::optional<int> frames;                ///< --frames
     std::optional<int> measureError;          ///< --measure-error: every so many frames
     std::optional<glm::dvec2> spacing;        ///< --spacing

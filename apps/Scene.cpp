@@ -7,6 +7,7 @@
 #include <Inventor/SoPath.h>
 #include <Inventor/actions/SoGetMatrixAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
+#include <Inventor/actions/SoSearchAction.h>
 #include <Inventor/nodes/SoQuadMesh.h>
 #include <SoTerrain/SoTerrainShape.h>
 
@@ -106,6 +107,19 @@ FrameFigures Scene::figures() {
     }
     figures.triangles = *countedTriangles_;
     return figures;
+}
+
+bool Scene::isComplete() const {
+    SoSearchAction search;
+    search.setType(SoTerrainShape::getClassTypeId());
+    search.setInterest(SoSearchAction::ALL);
+    search.apply(root_.get());
+    const SoPathList& found = search.getPaths();
+    for (int i = 0; i < found.getLength(); ++i) {
+        const SoTerrainShape* shape = asTerrain(static_cast<SoFullPath*>(found[i])->getTail());
+        if (!shape->getStatistics().converged) return false;
+    }
+    return true;
 }
 
 terrain::Result<std::unique_ptr<ErrorMeter>> Scene::makeErrorMeter() {

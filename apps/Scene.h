@@ -48,6 +48,8 @@ public:
     /// Statistics of the latest frame; the caller fills in frame and times. Triangles of shapes that are not ours are counted,
     /// which is done once.
     FrameFigures figures();
+    /// Whether every terrain node has drawn all that it wants to: false while tiles are still being built.
+    bool isComplete() const;
     /// A meter for the terrain. Error: nothing is known about its full-resolution data.
     terrain::Result<std::unique_ptr<ErrorMeter>> makeErrorMeter();
 

@@ -50,6 +50,7 @@ private:
     void addCamera();
     void addMaterial();
     void setFields();
+    void waitForTiles();
     template <class Field, class Value>
     void setField(const char* flag, const char* name, const std::optional<Value>& value);
     SoPath* find(SoType type, bool derived) const;
@@ -111,6 +112,20 @@ void SceneBuilder::setFields() {
         setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(TRUE));
     else if (options_.scene.empty() && scene_.terrain_->getField("frustumCulling")) {
         setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(FALSE));
+    }
+}
+
+// Pictures and measured errors are those of complete frames, however long tiles take.
+void SceneBuilder::waitForTiles() {
+    if (options_.output.empty() && !options_.measureError) return;
+    SoSearchAction search;
+    search.setType(SoTerrainShape::getClassTypeId());
+    search.setInterest(SoSearchAction::ALL);
+    search.apply(scene_.root_.get());
+    const SoPathList& found = search.getPaths();
+    for (int i = 0; i < found.getLength(); ++i) {
+        SoNode* node = static_cast<SoFullPath*>(found[i])->getTail();
+        if (auto* background = dynamic_cast<SoSFBool*>(node->getField("background"))) background->setValue(FALSE);
     }
 }
 
@@ -192,6 +207,7 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     }
     if (auto problem = addTerrain(options_.algorithm ? *options_.algorithm : *findAlgorithm("roam"))) return problem;
     setFields();
+    waitForTiles();
     // The node has read the file itself; a second copy is kept only for those who need it.
     if (scene_.terrain_->isOfType(SoTerrainShape::getClassTypeId()) && !options_.measureError) scene_.grid_->source.reset();
     return std::nullopt;
@@ -300,6 +316,7 @@ std::optional<Error> SceneBuilder::fromFile() {
     }
     chooseTerrain();
     setFields();
+    waitForTiles();
     SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
     bounds.apply(scene_.root_.get());
     scene_.box_ = bounds.getBoundingBox();

@@ -29,7 +29,7 @@ const char* const usageText =
     "  --map FILE          height map\n"
     "  --texture FILE      texture\n"
     "  --frames N          frames of the flight (60)\n"
-    "  --nodes LIST        node classes, SoIndexedFaceSet,SoQuadMesh,SoBruteForceTerrain,SoROAMTerrain by default\n"
+    "  --nodes LIST        node classes, by default Coin's SoIndexedFaceSet and SoQuadMesh and all of SoTerrain\n"
     "  --pixel-error PX    field pixelError of the nodes that have it (2)\n"
     "  --error-every K     measure the screen error every K frames (20)\n"
     "  --json FILE         write everything that was measured here too\n"
@@ -37,7 +37,8 @@ const char* const usageText =
 
 struct Arguments {
     app::BenchRequest request;
-    std::vector<std::string> nodes{"SoIndexedFaceSet", "SoQuadMesh", "SoBruteForceTerrain", "SoROAMTerrain"};
+    std::vector<std::string> nodes{"SoIndexedFaceSet", "SoQuadMesh",          "SoBruteForceTerrain",
+                                   "SoROAMTerrain",    "SoChunkedLoDTerrain", "SoGeoMipmapTerrain"};
     std::string json;
     bool help = false;
     bool child = false;  ///< measure one class and print JSON
@@ -175,6 +176,8 @@ void printRow(const ordered_json& r) {
                 perSample("buffer_bytes").c_str(), r["start_ms"].get<double>());
     if (r["not_drawn"].get<double>() > 0)
         std::printf("%-22s %.0f samples in view were not drawn\n", "", r["not_drawn"].get<double>());
+    if (const int incomplete = r.value("incomplete_frames", 0))
+        std::printf("%-22s %d frames were timed before they were complete\n", "", incomplete);
     std::fflush(stdout);
 }
 

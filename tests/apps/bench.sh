@@ -10,7 +10,7 @@ expect 2 "$BENCH" --unknown
 expect 0 "$BENCH" --help
 expect 0 "$BENCH" --map "$SCRATCH/map.raw" --frames 4 --error-every 2 --json "$SCRATCH/b.json"
 grep -q 'offscreen rendering' "$SCRATCH/err" && skip "no EGL with desktop OpenGL"
-for node in SoIndexedFaceSet SoQuadMesh SoBruteForceTerrain SoROAMTerrain; do
+for node in SoIndexedFaceSet SoQuadMesh SoBruteForceTerrain SoROAMTerrain SoChunkedLoDTerrain SoGeoMipmapTerrain; do
     grep -q "^$node .*[0-9]" "$SCRATCH/out" || fail "no row for $node"
     grep -q "\"class\": \"$node\"" "$SCRATCH/b.json" || fail "no JSON for $node"
 done
@@ -18,6 +18,9 @@ done
 for node in SoIndexedFaceSet SoQuadMesh SoBruteForceTerrain; do
     grep -q "^$node .* 8192 " "$SCRATCH/out" || fail "$node does not draw 8192 triangles"
 done
+# Tiles that are still being built spoil no error; column 9 is the largest.
+awk '/^SoChunkedLoDTerrain .*[0-9]/ { found = 1; if (!($9 <= 2.0)) exit 1 } END { exit !found }' "$SCRATCH/out" ||
+    fail "SoChunkedLoDTerrain exceeds 2 pixels: $(cat "$SCRATCH/out")"
 expect 1 "$BENCH" --map "$SCRATCH/map.raw" --frames 1 --nodes SoNoSuchNode
 grep -q 'SoNoSuchNode' "$SCRATCH/err" || fail "the unknown node is not named"
 expect 1 "$BENCH" --map "$SCRATCH/none.raw" --frames 1 --nodes SoQuadMesh

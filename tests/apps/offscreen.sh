@@ -11,7 +11,7 @@ colors() {
     tail -n +4 "$1" | od -An -v -t u1 -w3 | sort -u | wc -l
 }
 
-for algorithm in bruteforce geomipmapping roam indexedfaceset quadmesh; do
+for algorithm in bruteforce chunkedlod geomipmapping roam indexedfaceset quadmesh; do
     expect 0 "$TEST" -h "$SCRATCH/map.raw" -a "$algorithm" -c --offscreen=160x120 -v --frames 6 --output "$SCRATCH/$algorithm-%02d.ppm" \
         -p "$SCRATCH/$algorithm.csv" --stats --measure-error 2 --record "$SCRATCH/$algorithm-flight.csv"
     for i in 00 01 02 03 04 05; do
@@ -38,6 +38,21 @@ expect 0 "$TEST" -h "$SCRATCH/map.raw" -a roam --offscreen=64x48 --frames 3
     fail "no line of figures: $(cat "$SCRATCH/out")"
 expect 0 "$TEST" -h "$SCRATCH/map.raw" -a roam --offscreen=64x48 --output "$SCRATCH/quiet.ppm"
 [ -s "$SCRATCH/out" ] && fail "a line of figures beside --output"
+
+# Tiles are built in the background, but nothing that is shown or measured may lack some: one frame is drawn until they are all
+# there, and the frames of a flight wait for them where they are written.
+bound() {
+    sed -n 's/.*"bound_max": \([0-9.e-]*\).*/\1/p' "$SCRATCH/out"
+}
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a chunkedlod -g 8 -e 0.5 -c --offscreen --stats
+awk -v b="$(bound)" 'BEGIN { exit !(b != "" && b <= 0.5) }' || fail "one frame of chunkedlod was not complete: $(cat "$SCRATCH/out")"
+expect 0 "$TEST" -h "$SCRATCH/map.raw" -a chunkedlod -g 8 -e 0.5 -c --offscreen -v --frames 4 --output "$SCRATCH/tiles-%d.ppm" --stats
+awk -v b="$(bound)" 'BEGIN { exit !(b != "" && b <= 0.5) }' || fail "frames of chunkedlod were not complete: $(cat "$SCRATCH/out")"
+for algorithm in chunkedlod geomipmapping; do
+    expect 0 "$TEST" -h "$SCRATCH/map.raw" -a "$algorithm" -g 8 -e 4 -c -v -s -A 300 -F 20 -p "$SCRATCH/tiles.csv" --offscreen=160x120 --stats
+    [ "$(wc -l <"$SCRATCH/tiles.csv")" -gt 1 ] || fail "$algorithm: no frames with -s"
+    [ -s "$SCRATCH/err" ] && fail "$algorithm: $(cat "$SCRATCH/err")"
+done
 
 # A headerless map that is no square, in 16 bits: 65 x 32 samples; its grid shows in the triangles of the quad mesh.
 head -c 4160 "$SCRATCH/map.raw" >"$SCRATCH/wide.raw"

@@ -14,7 +14,7 @@ for line in "" "-x" "-h" "-h m -a magic" "-h m -e nan" "-h m -e -1" "-h m -r -1"
 done
 
 expect 2 "$TEST" -h m -a magic
-for name in bruteforce geomipmapping roam indexedfaceset quadmesh; do grep -q "$name" "$SCRATCH/err" || fail "-a does not list $name"; done
+for name in bruteforce chunkedlod geomipmapping roam indexedfaceset quadmesh; do grep -q "$name" "$SCRATCH/err" || fail "-a does not list $name"; done
 
 expect 0 "$TEST" --help
 for word in -h -t -p -a -A -F -e -r -g -f -c -v -s --scene --offscreen --output --frames --flight --record --spacing --height-scale \
