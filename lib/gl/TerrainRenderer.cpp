@@ -55,7 +55,9 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
     }
     const std::size_t stride = format_.stride();
     if (stride == 0 || (list.newVertices.empty() && !everything)) return;
-    mirror_.resize(list.samples.size() * stride);
+    const std::size_t size = list.samples.size() * stride;
+    if (size > mirror_.capacity()) mirror_.reserve(size + size / 8);
+    mirror_.resize(size);
     if (everything)
         for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex)
             source.write(list.samples[vertex], mirror_.data() + vertex * stride);

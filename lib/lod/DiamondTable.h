@@ -38,8 +38,7 @@ public:
         while (places_[hole].key != key) hole = next(hole);
         for (std::size_t at = next(hole); places_[at].number != kNone; at = next(at)) {
             // An entry may fill the hole unless its home lies between the hole and where it stands.
-            const std::size_t distanceHome = (at - home(places_[at].key)) & mask(), distanceHole = (at - hole) & mask();
-            if (distanceHome < distanceHole) continue;
+            if (distance(home(places_[at].key), at) < distance(hole, at)) continue;
             places_[hole] = places_[at];
             hole = at;
         }
@@ -56,9 +55,14 @@ private:
     };
 
     static std::uint32_t keyOf(glm::ivec2 c) { return std::uint32_t(c.y) << 16 | std::uint32_t(c.x); }
-    std::size_t mask() const { return places_.size() - 1; }
-    std::size_t next(std::size_t at) const { return (at + 1) & mask(); }
-    std::size_t home(std::uint32_t key) const { return std::size_t((key * 0x9e3779b97f4a7c15u) >> 32) & mask(); }
+    std::size_t next(std::size_t at) const { return at + 1 < places_.size() ? at + 1 : 0; }
+    /// Steps of next() from one place to another.
+    std::size_t distance(std::size_t from, std::size_t to) const { return to >= from ? to - from : to + places_.size() - from; }
+    std::size_t home(std::uint32_t key) const {
+        // The upper half of the product, scaled to the number of places.
+        const std::uint64_t mixed = (key * 0x9e3779b97f4a7c15u) >> 32;
+        return std::size_t((mixed * places_.size()) >> 32);
+    }
 
     void put(const Place& place) {
         std::size_t at = home(place.key);
@@ -67,7 +71,8 @@ private:
     }
 
     void grow() {
-        std::vector<Place> old(places_.size() * 2);
+        // By less than doubling: for large meshes this table is a good part of what they hold.
+        std::vector<Place> old(places_.size() + places_.size() / 3);
         old.swap(places_);
         for (const Place& place : old)
             if (place.number != kNone) put(place);
