@@ -57,7 +57,8 @@
 */
 /*!
   \var SoSFInt32 SoChunkedLoDTerrain::uploadBudget
-  Kilobytes of vertices that tiles new on screen may send to GL in one frame; what exceeds it waits for the next. 0 is no limit. Default 1024.
+  Kilobytes of vertices that tiles new on screen may send to GL in one frame; what exceeds it waits for the next. A tile
+  whose parts do not go up together within it stays as it is. 0 is no limit. Default 1024.
 */
 /*!
   \var SoSFBool SoChunkedLoDTerrain::background

@@ -60,6 +60,10 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
         if (indicesChanged) writeIndices();
         report_.triangles = std::uint32_t(indices_.size() / 3);
         report_.patches = drawnTiles();
+        // Where budgets allow no more, another selection would give the same.
+        const bool isIdle = cache_.isIdle();
+        if (isIdle && wasIdle_ && !indicesChanged && placedBytes_ == 0) report_.converged = true;
+        wasIdle_ = isIdle;
     }
     isFirst_ = false;
     DrawList list;

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <thread>
 
+#include <SoTerrain/SoChunkedLoDTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 
 using namespace test;
@@ -61,8 +64,42 @@ TEST(LargeMaps, OfSixteenMillionSamplesLookLikeTheyAre) {
                     statistics.memoryBytes >> 20, statistics.bufferBytes >> 20);
         return picture;
     };
-    const auto roam = draw(Kind::Roam), geoMipmap = draw(Kind::GeoMipmap), bruteForce = draw(Kind::BruteForce);
-    savePicture("size_4097x4097", {bruteForce, roam, geoMipmap});
+    const auto roam = draw(Kind::Roam), geoMipmap = draw(Kind::GeoMipmap), chunkedLod = draw(Kind::ChunkedLod), bruteForce = draw(Kind::BruteForce);
+    savePicture("size_4097x4097", {bruteForce, roam, geoMipmap, chunkedLod});
     expectAlike(bruteForce, roam, 3.0, "ROAM");
     expectAlike(bruteForce, geoMipmap, 3.0, "Geo Mip-Mapping");
+    expectAlike(bruteForce, chunkedLod, 3.0, "Chunked LoD");
+}
+
+TEST(LargeMaps, StreamInWithinTheirBudgets) {
+    const TemporaryFolder folder;
+    writeMap(folder.file("large.raw"));
+    Ref<SoHeightMap> map(new SoHeightMap);
+    map->filename = folder.file("large.raw").c_str();
+    map->rawType = SoHeightMap::UINT16_LITTLE_ENDIAN;
+    map->heightScale = 0.03f;
+    const auto root = largeScene(Kind::ChunkedLod, map.get());
+    auto* node = static_cast<SoChunkedLoDTerrain*>(terrainIn(root.get()));
+    node->background = TRUE;
+    node->memoryBudget = 8;
+    node->uploadBudget = 128;
+    Stage stage;
+    stage.render(root.get());
+    // What is held beside tiles: bounds of the map, and vertices and indices of what is drawn.
+    const std::size_t bounds = std::size_t(4097) * 4097 / 5;
+    std::uint32_t patches = 0;
+    int frames = 0;
+    for (; !node->getStatistics().converged; ++frames) {
+        ASSERT_LT(frames, 20000) << "never complete";
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        const std::size_t buffers = node->getStatistics().bufferBytes;
+        EXPECT_GT(coveredPixels(stage.render(root.get())), 10000);
+        const SoTerrainStatistics statistics = node->getStatistics();
+        // Positions and indices of all that is drawn go up in each frame, attributes when a tile is new.
+        ASSERT_LE(statistics.memoryBytes, (std::size_t(8) << 20) + bounds + 3 * std::max(buffers, statistics.bufferBytes) + (1u << 20)) << "frame " << frames;
+        patches = std::max(patches, statistics.patches);
+    }
+    std::printf("complete after %d frames, %u tiles\n", frames, patches);
+    EXPECT_GT(frames, 10);
+    EXPECT_LE(node->getStatistics().errorPixels, 2.0);
 }

@@ -93,6 +93,12 @@ TEST(Tiles, KeepSmallBudgetsAndStillShowTheGround) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     EXPECT_LT(node->getStatistics().patches, 10u) << "the budgets can't have been kept";
+    EXPECT_TRUE(node->getStatistics().converged) << "it would be redrawn for ever";
+    EXPECT_GT(node->getStatistics().errorPixels, 1.0);
+    node->memoryBudget = 64;
+    node->uploadBudget = 0;
+    stage.render(root.get());
+    EXPECT_FALSE(node->getStatistics().converged) << "it goes on when it may";
 }
 
 TEST(Tiles, MayGoBeforeTheyAreBuilt) {
