@@ -38,6 +38,10 @@ public:
     using Builder = typename TileJobs<Tile>::Builder;
 
     static constexpr std::size_t kDefaultBudget = std::size_t(256) << 20;
+    /// So many jobs per worker are submitted per frame at most, and for so many tiles room is made by evicting others: enough to
+    /// keep workers busy until the next frame at 0.1 ms a tile, few enough that a turn of the head does not cost all that was
+    /// resident.
+    static constexpr std::size_t kJobsPerWorker = 64;
 
     /// Without a runner TaskRunner::shared() is used.
     TileCache(std::shared_ptr<TaskRunner> runner, Builder builder)
@@ -127,10 +131,6 @@ public:
     void wait() { jobs_->wait(); }
 
 private:
-    /// So many jobs per worker are submitted per frame at most, and for so many tiles room is made by evicting others: enough to
-    /// keep workers busy until the next frame, few enough that a turn of the head does not cost all that was resident.
-    static constexpr std::size_t kJobsPerWorker = 64;
-
     using Request = typename TileJobs<Tile>::Request;
     using Finished = typename TileJobs<Tile>::Finished;
 

@@ -236,16 +236,17 @@ TEST_F(TileCacheByHand, AnEvictedTileIsBuiltAgainWhenItIsWanted)
 
 TEST_F(TileCacheByHand, ASharpTurnDoesNotEvictMoreThanCanBeReplacedSoon)
 {
-    cache.setBudget(10000);
+    constexpr std::size_t soon = TileCache<TestTile>::kJobsPerWorker, all = 4 * soon;
+    cache.setBudget(100 * all);
     std::vector<std::pair<int, double>> before, after;
-    for (int i = 0; i < 100; ++i) before.push_back({i, 1.0}), after.push_back({1000 + i, 1.0});
+    for (int i = 0; i < int(all); ++i) before.push_back({i, 1.0}), after.push_back({1000 + i, 1.0});
     settle(before);
-    ASSERT_EQ(cache.residentTiles(), 100u);
+    ASSERT_EQ(cache.residentTiles(), all);
     frame(after);
-    EXPECT_GE(cache.residentTiles(), 90u);
+    EXPECT_GE(cache.residentTiles(), all - soon - 2);
     settle(after);
-    EXPECT_TRUE(cache.contains(key(1099)));
-    EXPECT_EQ(cache.peakBytes(), 10000u);
+    EXPECT_TRUE(cache.contains(key(1000 + int(all) - 1)));
+    EXPECT_EQ(cache.peakBytes(), 100 * all);
 }
 
 TEST_F(TileCacheByHand, RemembersFailuresAndDoesNotRetryThem)
