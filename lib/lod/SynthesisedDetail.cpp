@@ -81,16 +81,14 @@ std::uint32_t SynthesisedDetail::noiseIndex(glm::ivec2 vertex, int level, std::u
     std::uint32_t x = std::uint32_t(vertex.x) * 1664525u + 1013904223u;
     std::uint32_t y = std::uint32_t(vertex.y) * 1664525u + 1013904223u;
     std::uint32_t z = (seed + std::uint32_t(level) * 0x9E3779B9u) * 1664525u + 1013904223u;
-    const auto mix = [&] {
-        x += y * z;
-        y += z * x;
-        z += x * y;
-    };
-    mix();
+    x += y * z;
+    y += z * x;
+    z += x * y;
     x ^= x >> 16;
     y ^= y >> 16;
     z ^= z >> 16;
-    mix();
+    // Of the second round only x is wanted.
+    x += y * z;
     return (x >> 16) % kNoiseValues;
 }
 
