@@ -6,6 +6,8 @@
 
 #include <Inventor/elements/SoLazyElement.h>
 #include <Inventor/elements/SoMultiTextureCoordinateElement.h>
+#include <Inventor/elements/SoMultiTextureImageElement.h>
+#include <Inventor/misc/SoState.h>
 
 /// A pointer to a protected member, taken through a derived class, applies to the base class too.
 class LazyElementAccess : public SoLazyElement {
@@ -22,6 +24,16 @@ public:
     static std::uint64_t unitId(const SoMultiTextureCoordinateElement * element, int unit)
     {
         const UnitData & (SoMultiTextureCoordinateElement::*unitData)(int) const = &TextureCoordinateElementAccess::getUnitData;
+        return (element->*unitData)(unit).nodeid;
+    }
+};
+
+class TextureImageElementAccess : public SoMultiTextureImageElement {
+public:
+    static std::uint64_t unitId(SoState * state, int unit)
+    {
+        const auto * element = static_cast<const SoMultiTextureImageElement *>(state->getConstElement(getClassStackIndex()));
+        const UnitData & (SoMultiTextureImageElement::*unitData)(int) const = &TextureImageElementAccess::getUnitData;
         return (element->*unitData)(unit).nodeid;
     }
 };

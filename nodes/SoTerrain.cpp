@@ -8,6 +8,8 @@
 #include <SoTerrain/SoROAMTerrain.h>
 #include <SoTerrain/SoTerrainDetail.h>
 #include <SoTerrain/SoTerrainShape.h>
+#include <SoTerrain/SoTerrainTexture.h>
+#include <SoTerrain/SoTerrainTextureElement.h>
 
 #ifdef HAVE_CONFIG_H
 #include "config.h"
@@ -18,6 +20,8 @@ void SoTerrain::init()
     SoHeightMapElement::initClass();
     SoTerrainDetail::initClass();
     SoHeightMap::initClass();
+    SoTerrainTextureElement::initClass();
+    SoTerrainTexture::initClass();
     SoTerrainShape::initClass();
     SoBruteForceTerrain::initClass();
     SoChunkedLoDTerrain::initClass();

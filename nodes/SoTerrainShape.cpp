@@ -86,11 +86,13 @@
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoTerrainDetail.h>
+#include <SoTerrain/SoTerrainTexture.h>
 
 #include <glm/matrix.hpp>
 
 #include "StateAttributes.h"
 #include "lod/BruteForceMesh.h"
+#include "lod/DetailCast.h"
 #include "lod/UpperSide.h"
 
 SO_NODE_ABSTRACT_SOURCE(SoTerrainShape);
@@ -142,6 +144,7 @@ void SoTerrainShape::initClass()
     // Elements must be enabled before an action first meets the node.
     SoHeightMap::initClass();
     SoTerrainDetail::initClass();
+    SoTerrainTexture::initClass();
     SO_NODE_INIT_ABSTRACT_CLASS(SoTerrainShape, SoShape, "Shape");
 }
 
@@ -188,6 +191,11 @@ void SoTerrainShape::discardMeshes()
 bool SoTerrainShape::needsErrors() const
 {
     return true;
+}
+
+const terrain::SynthesisedDetail * SoTerrainShape::detailOf(const TerrainGrid &)
+{
+    return NULL;
 }
 
 void SoTerrainShape::notify(SoNotList * list)
@@ -283,23 +291,29 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     for (const std::string & problem : attributes.problems()) master->warnOnce(problem.c_str());
     const terrain::View camera = viewOf(state);
     if (!master->freeze.getValue() || !view.hasMesh) select(view, camera, state, *data, attributes);
+    const TerrainTextureUse::Frame texture = textures.update(action, camera, data->grid, attributes, frame);
+    if (!texture.problem.empty()) master->warnOnce(texture.problem.c_str());
 
     const Clock::time_point start = Clock::now();
     if (attributes.hasOverallNormal()) glNormal3fv(attributes.normal(0, 0).getValue());
     const bool cull = !glIsEnabled(GL_CULL_FACE) && hidesUndersides(view, camera, state, *data);
     if (cull) glEnable(GL_CULL_FACE);
-    view.renderer.draw();
+    {
+        const TerrainTextureUse::FixedFunction tiled(texture);
+        view.renderer.draw();
+    }
     if (cull) glDisable(GL_CULL_FACE);
     if (attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
     statistics.drawMilliseconds = millisecondsSince(start);
 
     statistics.triangles = view.renderer.triangles();
     statistics.patches = view.renderer.triangles() > 0 ? view.report.patches : 0;
-    statistics.converged = view.report.converged;
+    statistics.converged = view.report.converged && texture.converged;
+    statistics.uploadedBytes += texture.uploadedBytes;
     statistics.errorPixels = view.report.errorPixels;
-    statistics.memoryBytes = grids.bytes() + views.memoryBytes();
-    statistics.bufferBytes = views.bufferBytes();
-    if (!view.report.converged && !again.isScheduled()) again.schedule();
+    statistics.memoryBytes = grids.bytes() + views.memoryBytes() + textures.memoryBytes();
+    statistics.bufferBytes = views.bufferBytes() + textures.textureBytes();
+    if (!statistics.converged && !again.isScheduled()) again.schedule();
 }
 
 void SoTerrainShape::GLRender(SoGLRenderAction * action)
@@ -314,7 +328,9 @@ void SoTerrainShape::computeBBox(SoAction * action, SbBox3f & box, SbVec3f & cen
 {
     const std::optional<TerrainGrid> data = pimpl->findGrid(action->getState(), false);
     if (!data) return;
-    const terrain::BoxPyramid::Bounds & bounds = data->model.boxes->all();
+    const terrain::SynthesisedDetail * detail = this->detailOf(*data);
+    const terrain::BoxPyramid & boxes = *data->model.boxes;
+    const terrain::BoxPyramid::Bounds bounds = detail ? terrain::detailBounds(boxes, *detail) : boxes.all();
     if (bounds.isEmpty()) return;
     for (const glm::vec3 & corner : {bounds.low, bounds.high}) {
         const glm::dvec4 local = data->grid.localFromFrame() * glm::dvec4(corner, 1.0);

@@ -11,6 +11,7 @@
 #include <SoTerrain/SoTerrainShape.h>
 
 #include "GridCache.h"
+#include "TerrainTextureUse.h"
 #include "TerrainViews.h"
 
 class StateAttributes;
@@ -31,6 +32,7 @@ public:
     SoTerrainShape * master;
     GridCache grids;
     TerrainViews views;
+    TerrainTextureUse textures;
     std::uint64_t meshVersion = 0;  ///< meshes of an earlier one are replaced
     SoTerrainStatistics statistics;
     std::set<std::string> warned;

@@ -14,6 +14,7 @@
 #include <Inventor/misc/SoState.h>
 
 #include "ElementAccess.h"
+#include "TerrainTextureUse.h"
 
 StateAttributes::StateAttributes(SoAction * action, const terrain::SampleGrid & grid, bool forGL) : grid_(grid)
 {
@@ -88,8 +89,10 @@ void StateAttributes::readTextures(SoState * state, bool forGL)
     if (!forGL) return;
     int last = -1;
     const SbBool * enabled = SoMultiTextureEnabledElement::getEnabledUnits(state, last);
-    for (int unit = 0; unit <= last && enabled; ++unit) {
-        if (!enabled[unit]) continue;
+    const bool tiled = hasTerrainTexture(state);
+    for (int unit = 0; unit <= std::max(last, 0); ++unit) {
+        const bool wanted = (enabled && unit <= last && enabled[unit]) || (unit == 0 && tiled);
+        if (!wanted) continue;
         const auto type = SoMultiTextureCoordinateElement::getType(state, unit);
         mix(std::uint64_t(type) + std::uint64_t(unit) * 16);
         // Functions are GL's own texture coordinate generation: it needs no coordinates from us.

@@ -12,9 +12,11 @@
 
 class SoGLRenderAction;
 class SoState;
+class SoTerrainTextureElement;
 class StateAttributes;
 
-/// Whether the texture of unit 0 is an SoTerrainTexture: none is active after an SoTexture2 that follows it, or one whose file failed.
+/// Whether the texture of unit 0 is an SoTerrainTexture: not after an SoTexture2 that follows it, nor where its file could not be opened. For
+/// SoGLRenderAction only.
 bool hasTerrainTexture(SoState * state);
 
 /// The texture clipmaps of one terrain node, one for each of its views. Textures and programs are deleted in the context that they
@@ -63,6 +65,7 @@ private:
     struct View;
     static void contextGoes(std::uint32_t context, void * closure);
     static void giveUp(View & view);
+    View & find(const ViewKey & key, const SoTerrainTextureElement * element, std::uint64_t frame);
 
     std::vector<std::unique_ptr<View>> views;
 };

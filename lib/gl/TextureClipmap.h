@@ -16,10 +16,11 @@
 
 namespace terrain {
 
-/// A clipmap (Tanner, Migdal, Jones: "The Clipmap: A Virtual Mipmap", 1998). Of each level of the image that is larger than the clip
-/// size, a window of clipSize x clipSize texels around a focus is resident, in a layer of a texture array; texel (x, y) of the level
-/// lies at (x mod clipSize, y mod clipSize), so that a window that moves writes only the texels that it did not hold. Smaller levels
-/// are wholly resident, in a mip-mapped texture: 4 bytes a texel, clipSize^2 for each level and 4/3 clipSize^2 for the small ones.
+/// A clipmap (Tanner, Migdal, Jones: "The Clipmap: A Virtual Mipmap", 1998). Of each level of the image that is larger than the
+/// clip size, a window of clipSize x clipSize texels around a focus is resident, in a layer of a texture array; texel (x, y) of the
+/// level lies at (x mod clipSize, y mod clipSize), so that a window that moves writes only the texels that it did not hold. Smaller
+/// levels are wholly resident, in a mip-mapped texture: 4 bytes a texel, clipSize^2 for each level and 4/3 clipSize^2 for the small
+/// ones.
 ///
 /// Of a level that is not complete yet the part that is there is used: what is resident is always one rectangle.
 ///
@@ -50,16 +51,16 @@ public:
     };
 
     /// Moves the windows and loads what they newly cover, from coarse to fine, each texel once. `focus` in texture coordinates:
-    /// (0, 0) is the image's lower left corner, (1, 1) the upper right one. Levels below `finestLevel` are not needed: they are not
-    /// loaded, and what is there of them stays only while it lies in their windows. `texelBudget`: most texels to load, but at least
-    /// one line of a window; 0: no limit. The small levels are loaded at once in the first call, without counting.
+    /// (0, 0) is the image's lower left corner, (1, 1) the upper right one. Levels below `finestLevel` are not needed: they stay as
+    /// they are. `texelBudget`: most texels to load, but at least one line of a window; 0: no limit. The small levels are loaded at
+    /// once in the first call, without counting.
     /// Error: the image can't be read, or GL is too old; the clipmap must not be used then. GL's state is what it was.
     Result<Progress> update(glm::dvec2 focus, int finestLevel, std::size_t texelBudget);
 
     /// GLSL 1.30, to be put into a fragment shader behind "#version 130" or later: declares the uniforms and
     /// `vec4 terrainTexture(vec2 st)`, the colour at texture coordinates st, clamped to [0, 1]. The level is that which the
-    /// derivatives of st ask for, or the finest there; levels are blended (trilinear), and at the border of what is there of a level
-    /// into the next coarser one. To be called in uniform control flow. Names begin with "terrainTexture".
+    /// derivatives of st ask for, or the finest there; levels are blended (trilinear), and at the border of what is there of a
+    /// level into the next coarser one. To be called in uniform control flow. Names begin with "terrainTexture".
     static const char* glsl();
     /// How many texture units terrainTexture() uses.
     static constexpr int kUnits = 2;
@@ -74,7 +75,7 @@ public:
         Binding& operator=(const Binding&) = delete;
 
     private:
-        GLint active_ = 0, small_ = 0, array_ = 0;
+        GLint active_ = 0, small_ = 0, array_ = 0;  ///< before
         int firstUnit_;
     };
     /// The highest texture units that there are, which no Coin node uses: a first unit for Binding.
@@ -91,16 +92,19 @@ public:
     std::vector<GLuint> release();
 
 private:
-    Result<Progress> create();
-    Result<std::size_t> loadSmall();
-    Result<std::size_t> load(int level, const Window& part);
-    Result<std::size_t> grow(int level, const Window& wanted, std::size_t budget);
+    class UploadScope;
+    std::optional<Error> create();
+    std::optional<Error> createArray();
+    std::optional<Error> loadSmall();
+    std::optional<Error> load(int level, const Window& part);
+    std::optional<Error> moveWindow(int level, const Window& wanted, int focusRow, std::size_t budget, Progress& progress);
+    void fitClipSize();
     Window wantedAround(int level, glm::dvec2 focus) const;
 
     std::shared_ptr<const TiledImage> image_;
     int clipSize_;
+    glm::ivec2 layer_{0, 0};  ///< texels of a layer of the array: clipSize_, or all of an image that is not as wide or as high
     std::vector<Window> windows_;
-    glm::dvec2 focus_{0.5, 0.5};
     GLuint small_ = 0, array_ = 0;
     std::size_t textureBytes_ = 0;
     std::vector<std::uint8_t> texels_;

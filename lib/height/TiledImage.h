@@ -33,9 +33,9 @@ public:
     int levels() const { return int(sizes_.size()); }
     Size size(int level = 0) const { return sizes_[std::size_t(level)]; }
 
-    /// Writes texels (x, y) to (x + width - 1, y + height - 1) of a level, row after row from the image's top, to `rgba`: 4 * width *
-    /// height bytes. Images of one or two channels are grey; alpha is not associated, 255 where the image has none. Values are taken as
-    /// they are stored: no colour space is changed. Error: outside of the level, or data that can't be read.
+    /// Writes texels (x, y) to (x + width - 1, y + height - 1) of a level, row after row from the image's top, to `rgba`: 4 * width
+    /// * height bytes. Images of one or two channels are grey; alpha is not associated, 255 where the image has none. Values are
+    /// taken as they are stored: no colour space is changed. Error: outside of the level, or data that can't be read.
     Result<std::size_t> read(int level, int x, int y, int width, int height, std::uint8_t* rgba) const;
 
     /// Bytes of tiles that the cache holds.

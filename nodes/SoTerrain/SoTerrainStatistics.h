@@ -14,9 +14,9 @@ struct SoTerrainStatistics {
     uint32_t merges = 0;        ///< coarsenings of the mesh in this frame
     bool converged = true;      ///< false: a limit on work per frame stopped refinement, the next frames go on
     double errorPixels = 0.0;   ///< bound on the screen error of every sample in view; at most pixelError when converged without a budget
-    std::size_t memoryBytes = 0;    ///< main memory held beyond Coin's own arrays: hierarchy, meshes
-    std::size_t bufferBytes = 0;    ///< GL buffers, all contexts
-    std::size_t uploadedBytes = 0;  ///< sent to GL buffers in this frame
+    std::size_t memoryBytes = 0;    ///< main memory held beyond Coin's own arrays: hierarchy, meshes, tiles of a texture
+    std::size_t bufferBytes = 0;    ///< GL buffers, and textures of an SoTerrainTexture, all contexts
+    std::size_t uploadedBytes = 0;  ///< sent to GL buffers and textures in this frame
     double buildMilliseconds = 0.0;   ///< preparing the height data; 0 but in the frame that did it
     double selectMilliseconds = 0.0;  ///< choosing the mesh
     double uploadMilliseconds = 0.0;  ///< filling buffers
