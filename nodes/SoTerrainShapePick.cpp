@@ -1,4 +1,4 @@
-// Picking, heights and primitives of SoTerrainShape: all at full resolution, whatever is on screen.
+// Picking, heights and primitives of SoTerrainShape: all at full resolution, whatever is on screen. Primitives are without detail.
 #include <epoxy/gl.h>
 
 #include "SoTerrainShapeP.h"
@@ -21,7 +21,7 @@
 #include "ParentNode.h"
 #include "StateAttributes.h"
 #include "lod/BruteForceMesh.h"
-#include "lod/RayCast.h"
+#include "lod/DetailCast.h"
 
 namespace {
 
@@ -35,7 +35,16 @@ SbVec3f toCoin(const glm::dvec3 & v)
     return SbVec3f(float(v.x), float(v.y), float(v.z));
 }
 
-/// Geometric normal of a cell's triangle, up where up is known.
+/// Normal of a triangle in local coordinates, up where up is known.
+SbVec3f faceNormal(const terrain::SampleGrid & grid, const SbVec3f (&corner)[3])
+{
+    SbVec3f normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    normal.normalize();
+    if (grid.isRegular() && normal[grid.heightAxis()] < 0.0f) normal.negate();
+    return normal;
+}
+
+/// Geometric normal of a cell's triangle.
 SbVec3f faceNormal(const terrain::SampleGrid & grid, int column, int row, int triangle)
 {
     SbVec3f corner[3];
@@ -44,10 +53,16 @@ SbVec3f faceNormal(const terrain::SampleGrid & grid, int column, int row, int tr
         const glm::vec3 p = grid.position(column + offset[0], row + offset[1]);
         corner[i].setValue(p.x, p.y, p.z);
     }
-    SbVec3f normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    normal.normalize();
-    if (grid.isRegular() && normal[grid.heightAxis()] < 0.0f) normal.negate();
-    return normal;
+    return faceNormal(grid, corner);
+}
+
+/// Geometric normal of the finest triangle over a place in the frame.
+SbVec3f faceNormal(const terrain::SampleGrid & grid, const terrain::SynthesisedDetail & detail, const glm::dvec2 & place)
+{
+    const auto triangle = terrain::finestTriangle(grid, detail, place);
+    SbVec3f corner[3];
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = toCoin(glm::dvec3(grid.localFromFrame() * glm::dvec4(triangle[i], 1.0)));
+    return faceNormal(grid, corner);
 }
 
 void fillDetail(SoTerrainDetail & detail, const terrain::SampleGrid & grid, const StateAttributes & attributes, int column, int row,
@@ -69,7 +84,8 @@ void fillDetail(SoTerrainDetail & detail, const terrain::SampleGrid & grid, cons
 }
 
 /// Normal, texture coordinate and material of a hit, from the corners of its triangle.
-void describe(SoPickedPoint * picked, const terrain::SampleGrid & grid, const StateAttributes & attributes, const terrain::RayHit & hit)
+void describe(SoPickedPoint * picked, const terrain::SampleGrid & grid, const terrain::SynthesisedDetail * detail,
+              const StateAttributes & attributes, const terrain::RayHit & hit)
 {
     SbVec3f normal(0.0f, 0.0f, 0.0f);
     SbVec2f texture(0.0f, 0.0f);
@@ -79,7 +95,8 @@ void describe(SoPickedPoint * picked, const terrain::SampleGrid & grid, const St
         if (attributes.hasExplicitNormals()) normal += attributes.normal(c, r) * weight;
         texture += attributes.textureCoordinate(0, c, r) * weight;
     }
-    if (!attributes.hasExplicitNormals() || normal.normalize() == 0.0f) normal = faceNormal(grid, hit.column, hit.row, hit.triangle);
+    if (!attributes.hasExplicitNormals() || normal.normalize() == 0.0f)
+        normal = detail ? faceNormal(grid, *detail, glm::dvec2(hit.point)) : faceNormal(grid, hit.column, hit.row, hit.triangle);
     picked->setObjectNormal(normal);
     picked->setObjectTextureCoords(SbVec4f(texture[0], texture[1], 0.0f, 1.0f));
     picked->setMaterialIndex(attributes.materialIndex(hit.column, hit.row));
@@ -99,14 +116,18 @@ void SoTerrainShape::rayPick(SoRayPickAction * action)
     const glm::dvec3 origin(frameFromLocal * glm::dvec4(toGlm(line.getPosition()), 1.0));
     const glm::dvec3 direction(frameFromLocal * glm::dvec4(toGlm(line.getDirection()), 0.0));
     constexpr double kEverywhere = 1e30;
+    const terrain::SynthesisedDetail * finer = this->detailOf(*data);
+    const terrain::BoxPyramid & boxes = *data->model.boxes;
+    const std::vector<terrain::RayHit> hits = finer ? terrain::castRay(grid, boxes, *finer, origin, direction, -kEverywhere, kEverywhere)
+                                                    : terrain::castRay(grid, boxes, origin, direction, -kEverywhere, kEverywhere);
     std::optional<StateAttributes> attributes;
-    for (const terrain::RayHit & hit : terrain::castRay(grid, *data->model.boxes, origin, direction, -kEverywhere, kEverywhere)) {
+    for (const terrain::RayHit & hit : hits) {
         const SbVec3f point = toCoin(glm::dvec3(grid.localFromFrame() * glm::dvec4(hit.point, 1.0)));
         // The action's planes are those of the ray and the clip planes of the state.
         if (!action->isBetweenPlanes(point)) continue;
         if (SoPickedPoint * picked = action->addIntersection(point)) {
             if (!attributes) attributes.emplace(action, grid, false);
-            describe(picked, grid, *attributes, hit);
+            describe(picked, grid, finer, *attributes, hit);
             SoTerrainDetail * detail = new SoTerrainDetail;
             fillDetail(*detail, grid, *attributes, hit.column, hit.row, hit.triangle, point[grid.heightAxis()]);
             picked->setDetail(detail, this);
@@ -191,11 +212,14 @@ SbBool SoTerrainShape::heightAt(float x, float y, float & height, SbVec3f * norm
         local[up == 0 ? 1 : 0] = x;
         local[up == 2 ? 1 : 2] = y;
         const glm::dvec4 frame = glm::inverse(data->grid.localFromFrame()) * glm::dvec4(local, 1.0);
-        const auto surface = terrain::surfaceAt(data->grid, {frame.x, frame.y});
+        const glm::dvec2 place(frame);
+        const terrain::SynthesisedDetail * finer = this->detailOf(*data);
+        const auto surface = finer ? terrain::surfaceAt(data->grid, *finer, place) : terrain::surfaceAt(data->grid, place);
         if (!surface) return;
         height = surface->height;
-        if (normal) *normal = faceNormal(data->grid, surface->column, surface->row, surface->triangle);
         found = TRUE;
+        if (!normal) return;
+        *normal = finer ? faceNormal(data->grid, *finer, place) : faceNormal(data->grid, surface->column, surface->row, surface->triangle);
     };
     this->ref();
     SoPath * walked = path ? path : pathFromTop(this);

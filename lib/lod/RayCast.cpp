@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "lod/BruteForceMesh.h"
+#include "lod/LineTests.h"
 
 namespace terrain {
 
@@ -13,9 +14,7 @@ namespace {
 
 class Caster {
 public:
-    Caster(const SampleGrid& grid, const BoxPyramid& boxes, const glm::dvec3& origin, const glm::dvec3& direction, double first,
-           double last)
-        : grid_(grid), boxes_(boxes), origin_(origin), direction_(direction), first_(first), last_(last) {
+    Caster(const SampleGrid& grid, const BoxPyramid& boxes, const Line& line) : grid_(grid), boxes_(boxes), line_(line) {
         // A little slack keeps what lies exactly on the border of a flat box.
         const BoxPyramid::Bounds all = boxes.all();
         if (!all.isEmpty()) slack_ = 1e-6 * (1.0 + glm::length(glm::dvec3(all.high) - glm::dvec3(all.low)));
@@ -28,24 +27,9 @@ public:
     }
 
 private:
-    bool meets(const glm::dvec3& low, const glm::dvec3& high) const {
-        double enter = first_, leave = last_;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (direction_[axis] == 0.0) {
-                if (origin_[axis] < low[axis] - slack_ || origin_[axis] > high[axis] + slack_) return false;
-                continue;
-            }
-            const double a = (low[axis] - slack_ - origin_[axis]) / direction_[axis];
-            const double b = (high[axis] + slack_ - origin_[axis]) / direction_[axis];
-            enter = std::max(enter, std::min(a, b));
-            leave = std::min(leave, std::max(a, b));
-        }
-        return enter <= leave;
-    }
-
     void descend(int level, int column, int row) {
         const BoxPyramid::Bounds bounds = boxes_.block(level, column, row);
-        if (bounds.isEmpty() || !meets(bounds.low, bounds.high)) return;
+        if (bounds.isEmpty() || !line_.meets(bounds.low, bounds.high, slack_)) return;
         if (level == 0) {
             constexpr int cells = BoxPyramid::kBlockCells;
             for (int y = row * cells; y < std::min((row + 1) * cells, grid_.rows() - 1); ++y)
@@ -58,38 +42,20 @@ private:
 
     void testCell(int column, int row) {
         const BoxPyramid::Bounds bounds = BoxPyramid::exactBounds(grid_, column, row, column + 1, row + 1);
-        if (bounds.isEmpty() || !meets(bounds.low, bounds.high) || isCellHole(grid_, column, row)) return;
+        if (bounds.isEmpty() || !line_.meets(bounds.low, bounds.high, slack_) || isCellHole(grid_, column, row)) return;
         for (int triangle = 0; triangle < 2; ++triangle) {
             glm::dvec3 corner[3];
             for (int i = 0; i < 3; ++i)
                 corner[i] = grid_.framePosition(column + kCellTriangles[triangle][i][0], row + kCellTriangles[triangle][i][1]);
-            testTriangle(corner, column, row, triangle);
+            if (const auto hit = line_.meets(corner))
+                hits_.push_back(
+                    {hit->distance, column, row, triangle, hit->barycentric, line_.origin + line_.direction * hit->distance});
         }
-    }
-
-    /// Moeller and Trumbore, "Fast, Minimum Storage Ray-Triangle Intersection", 1997. Borders belong to both neighbours, so that no
-    /// ray slips through between them.
-    void testTriangle(const glm::dvec3 (&corner)[3], int column, int row, int triangle) {
-        constexpr double kBorder = 1e-9;
-        const glm::dvec3 edge1 = corner[1] - corner[0], edge2 = corner[2] - corner[0];
-        const glm::dvec3 p = glm::cross(direction_, edge2);
-        const double determinant = glm::dot(edge1, p);
-        if (determinant == 0.0) return;
-        const glm::dvec3 toOrigin = origin_ - corner[0];
-        const double u = glm::dot(toOrigin, p) / determinant;
-        if (u < -kBorder || u > 1.0 + kBorder) return;
-        const glm::dvec3 q = glm::cross(toOrigin, edge1);
-        const double v = glm::dot(direction_, q) / determinant;
-        if (v < -kBorder || u + v > 1.0 + kBorder) return;
-        const double t = glm::dot(edge2, q) / determinant;
-        if (t < first_ || t > last_) return;
-        hits_.push_back({t, column, row, triangle, {1.0 - u - v, u, v}, origin_ + direction_ * t});
     }
 
     const SampleGrid& grid_;
     const BoxPyramid& boxes_;
-    glm::dvec3 origin_, direction_;
-    double first_, last_;
+    Line line_;
     double slack_ = 0.0;
     std::vector<RayHit> hits_;
 };
@@ -98,7 +64,7 @@ private:
 
 std::vector<RayHit> castRay(const SampleGrid& grid, const BoxPyramid& boxes, const glm::dvec3& origin, const glm::dvec3& direction,
                             double first, double last) {
-    return Caster(grid, boxes, origin, direction, first, last).cast();
+    return Caster(grid, boxes, {origin, direction, first, last}).cast();
 }
 
 std::optional<SurfacePoint> surfaceAt(const SampleGrid& grid, const glm::dvec2& position) {

@@ -75,7 +75,8 @@ public:
     /// each, whichever of the outer two are there. Columns of such rows have steps 5 / 4 D, so those odd on both axes are within
     /// 9 / 32 D of a mean of four, within 25 / 32 D of the diagonal, and of their neighbours too; noise n adds n and to steps 2 n.
     float largest(float step) const { return sums(0, step).deviation; }
-    /// How far heights of the finest level lie outside of the range of the heights around them on `level`, likewise.
+    /// How far the finest level's heights in a cell of `level` lie outside of the range of its corners, likewise: steps are those
+    /// of that level, within two of its vertices around.
     float overshoot(int level, float step) const { return sums(level, step).overshoot; }
 
 private:

@@ -15,10 +15,12 @@
 
 class SbVec3f;
 class SoPath;
+struct TerrainGrid;
 
 namespace terrain {
 class LodAlgorithm;
 class SampleGrid;
+class SynthesisedDetail;
 struct LodSettings;
 struct TerrainModel;
 }
@@ -41,9 +43,10 @@ public:
     /// Figures of the latest frame drawn by this node.
     SoTerrainStatistics getStatistics() const;
 
-    /// Height of the full-resolution terrain over (x, y) of the node's local coordinates; for a grid whose heights run along another
-    /// axis, (x, y) are the other two axes in order. The data is that of the node's place in its (first) scene graph, or of the node
-    /// at the end of \a path. FALSE outside the terrain, in a hole and without data; then nothing is written.
+    /// Height of the full-resolution terrain, with the detail that the node adds, over (x, y) of the node's local coordinates; for a
+    /// grid whose heights run along another axis, (x, y) are the other two axes in order. The data is that of the node's place in its
+    /// (first) scene graph, or of the node at the end of \a path. FALSE outside the terrain, in a hole and without data; then nothing
+    /// is written.
     SbBool heightAt(float x, float y, float & height, SbVec3f * normal = NULL, SoPath * path = NULL);
 
     virtual void GLRender(SoGLRenderAction * action);
@@ -61,6 +64,8 @@ protected:
     virtual void getSettings(terrain::LodSettings & settings) const;
     /// Whether the algorithm needs the error hierarchy.
     virtual bool needsErrors() const;
+    /// Detail finer than the samples that the node adds to this data, or null: then picking, heights and the bounding box include it.
+    virtual const terrain::SynthesisedDetail * detailOf(const TerrainGrid & data);
     /// To be called when meshes would now be created otherwise: every view gets a new algorithm when it is next drawn.
     void discardMeshes();
     /// The power of two from `least` to `most` nearest to what a field asks for, after a warning where that is another number.
