@@ -13,12 +13,15 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// The subdivision of b and c, with a before and d after them. As 9 (b + c) - (a + d) of 16ths, but all products are exact.
-inline float fourPoint(float a, float b, float c, float d) {
-    if (std::isnan(a)) a = b;
-    if (std::isnan(d)) d = c;
+/// The four-point subdivision of b and c, with a before and d after them. As 9 (b + c) - (a + d) of 16ths, but all products are
+/// exact.
+inline float subdivision(float a, float b, float c, float d) {
     const float inner = b + c;
     return 0.5f * inner + 0.0625f * (inner - (a + d));
+}
+
+inline float subdivisionOfThoseThere(float a, float b, float c, float d) {
+    return subdivision(std::isnan(a) ? b : a, b, c, std::isnan(d) ? c : d);
 }
 
 /// Quantiles of the standard normal distribution at the middles of equal shares, scaled to variance 1 and rounded to 2^-16: so they
@@ -60,7 +63,7 @@ void refineRow(const float* coarser, int first, int last, int low, int high, flo
     for (int x = low; x <= high; ++x) {
         const int k = x >> 1;
         const float* at = coarser + (k - first);
-        *out++ = x % 2 == 0 ? at[0] : fourPoint(k > 0 ? at[-1] : at[0], at[0], at[1], k + 2 <= last ? at[2] : at[1]);
+        *out++ = x % 2 == 0 ? at[0] : subdivisionOfThoseThere(k > 0 ? at[-1] : at[0], at[0], at[1], k + 2 <= last ? at[2] : at[1]);
     }
 }
 
@@ -120,7 +123,7 @@ void SynthesisedDetail::refine(const SampleGrid& grid, int level, const ClipRect
         } else {
             const float* a = refined(std::max(k - 1, 0));
             const float *b = refined(k), *c = refined(k + 1), *d = refined(std::min(k + 2, last.y));
-            for (int i = 0; i < columns; ++i) out[i] = fourPoint(a[i], b[i], c[i], d[i]);
+            for (int i = 0; i < columns; ++i) out[i] = subdivisionOfThoseThere(a[i], b[i], c[i], d[i]);
         }
         const int step = y % 2 == 0 ? 2 : 1, first = y % 2 == 0 ? 1 - rect.low.x % 2 : 0;
         for (int i = first; i < columns; i += step) out[i] += scale * table_[noiseIndex({rect.low.x + i, y}, level, seed_)];
@@ -186,13 +189,14 @@ SynthesisedDetail::Sums SynthesisedDetail::sums(int level, float step) const {
 
 float detailAmplitudeOf(const SampleGrid& grid) {
     if (!grid.isRegular()) return 0.0f;
-    // Blocks of four samples, three of them between the others, and of these at most 2^20.
+    // Blocks of four samples, three of them between the others, and of these at most 2^20. Only where all that predicts is there.
     const double blocks = double(grid.columns() / 2) * double(grid.rows() / 2);
     const int step = 2 * int(std::ceil(std::sqrt(std::max(1.0, 3.0 * blocks / (1 << 20)))));
-    const glm::ivec2 last((grid.columns() - 1) / 2, (grid.rows() - 1) / 2);
-    const auto every2nd = [&](int x, int y) { return grid.height(2 * std::clamp(x, 0, last.x), 2 * std::clamp(y, 0, last.y)); };
-    const auto alongRow = [&](int k, int y) {
-        return fourPoint(every2nd(k - 1, y), every2nd(k, y), every2nd(k + 1, y), every2nd(k + 2, y));
+    const auto alongRow = [&](int x, int y) {
+        return subdivision(grid.height(x - 2, y), grid.height(x, y), grid.height(x + 2, y), grid.height(x + 4, y));
+    };
+    const auto alongColumn = [&](int x, int y) {
+        return subdivision(grid.height(x, y - 2), grid.height(x, y), grid.height(x, y + 2), grid.height(x, y + 4));
     };
     double sum = 0.0, squares = 0.0, count = 0.0;
     const auto add = [&](int x, int y, float prediction) {
@@ -202,12 +206,11 @@ float detailAmplitudeOf(const SampleGrid& grid) {
         squares += residual * residual;
         ++count;
     };
-    for (int y = 0; y + 2 < grid.rows(); y += step)
-        for (int x = 0; x + 2 < grid.columns(); x += step) {
-            const int i = x / 2, j = y / 2;
-            add(x + 1, y, alongRow(i, j));
-            add(x, y + 1, fourPoint(every2nd(i, j - 1), every2nd(i, j), every2nd(i, j + 1), every2nd(i, j + 2)));
-            add(x + 1, y + 1, fourPoint(alongRow(i, j - 1), alongRow(i, j), alongRow(i, j + 1), alongRow(i, j + 2)));
+    for (int y = 2; y + 4 < grid.rows(); y += step)
+        for (int x = 2; x + 4 < grid.columns(); x += step) {
+            add(x + 1, y, alongRow(x, y));
+            add(x, y + 1, alongColumn(x, y));
+            add(x + 1, y + 1, subdivision(alongRow(x, y - 2), alongRow(x, y), alongRow(x, y + 2), alongRow(x, y + 4)));
         }
     if (count == 0.0) return 0.0f;
     const double mean = sum / count;

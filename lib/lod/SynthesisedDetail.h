@@ -41,7 +41,7 @@ public:
     SynthesisedDetail(const SampleGrid& grid, const DetailShape& shape);
 
     int levels() const { return levels_; }
-    /// The one used: never 0 for data that is rough at its finest.
+    /// The one used, from 0 on.
     float amplitude() const { return amplitude_; }
     std::uint32_t seed() const { return seed_; }
     static glm::ivec2 lastVertex(const SampleGrid& grid, int level) {
@@ -95,7 +95,8 @@ private:
 };
 
 /// Half the standard deviation of what the four-point subdivision of every second sample leaves of the samples between: of a
-/// self-similar terrain, what it would leave of the next finer ones.
+/// self-similar terrain, what it would leave of the next finer ones. 0 for a curved grid, and for one with fewer than 7 samples
+/// along an axis.
 float detailAmplitudeOf(const SampleGrid& grid);
 
 }  // namespace terrain

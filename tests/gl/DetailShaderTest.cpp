@@ -116,9 +116,10 @@ bool sameBits(float a, float b)
     detail.fill(grid, level, rect, expected.data());
     for (int y = 0; y < rect.rows(); ++y)
         for (int x = 0; x < rect.columns(); ++x) {
-            const float a = drawn[std::size_t(y) * kSize + std::size_t(x)], b = expected[std::size_t(y) * std::size_t(rect.columns()) + std::size_t(x)];
+            const float a = drawn[std::size_t(y * kSize + x)], b = expected[std::size_t(y * rect.columns() + x)];
             if (!sameBits(a, b))
-                return ::testing::AssertionFailure() << "level " << level << ", " << rect.low.x + x << ", " << rect.low.y + y << ": " << a << " drawn, " << b;
+                return ::testing::AssertionFailure()
+                       << "level " << level << ", " << rect.low.x + x << ", " << rect.low.y + y << ": " << a << " drawn, " << b;
         }
     return ::testing::AssertionSuccess();
 }
@@ -143,7 +144,8 @@ TEST_F(DetailShader, MakesTheNoiseOfTheCpuBitForBit)
 
 TEST_F(DetailShader, MakesTheHeightsOfTheCpuBitForBit)
 {
-    for (const Terrain& terrain : {fractal(40, 23), fractal(2, 2), fractal(3, 50), spike(33), withDisc(40, 33), withBorderStrip(33), withCheckerboard(25)}) {
+    for (const Terrain& terrain : {fractal(40, 23), fractal(2, 2), fractal(3, 50), spike(33), withDisc(40, 33), withBorderStrip(33),
+                                   withCheckerboard(25)}) {
         const SampleGrid grid = terrain.grid();
         for (const float amplitude : {0.0f, 0.37f, -1.0f}) {
             const SynthesisedDetail detail(grid, {8, amplitude, 5});
