@@ -362,9 +362,9 @@ TEST_P(ClipmapErrorsOver, ScreenErrorBoundsWhateverIsDrawn)
 INSTANTIATE_TEST_SUITE_P(All, ClipmapErrorsOver, testing::ValuesIn(clipmapTerrains()),
                          [](const auto& info) { return info.param.name + "_" + std::to_string(info.index); });
 
-TEST(ClipmapErrors, ScreenErrorIsCloseToTheWorstSampleFromAbove)
+TEST(ClipmapErrors, ScreenErrorIsThatOfTheWorstSampleSeenFromTheSide)
 {
-    // One spike, seen straight from above in an orthographic view from the side: what is bounded is what is seen.
+    // In an orthographic view a spike's height is the same wherever it stands.
     const Terrain terrain = spike(129);
     const SampleGrid grid = terrain.grid();
     const ClipmapErrors errors(grid, 4);
@@ -383,6 +383,46 @@ TEST(ClipmapErrors, ScreenErrorIsCloseToTheWorstSampleFromAbove)
     EXPECT_EQ(errors.screenError(screen, grid, boxes, 0, false, all, {}, 0.0f), 0.0f);
     EXPECT_EQ(errors.screenError(screen, grid, boxes, -1, true, all, {}, 0.0f), 0.0f);
     EXPECT_EQ(errors.screenError(screen, grid, boxes, 4, false, all, {}, 0.0f), std::numeric_limits<float>::infinity());
+}
+
+TEST(ClipmapErrors, OnlyThePartOfABlockThatIsDrawnCounts)
+{
+    const Terrain terrain = spike(17);
+    const SampleGrid grid = terrain.grid();
+    const ClipmapErrors errors(grid, 3);
+    const BoxPyramid boxes(grid);
+    const glm::dvec3 target(terrain.box().centre), eye = target - glm::dvec3(0.0, 40.0, 0.0);
+    const View view{glm::perspective(1.5, 1.0, 0.5, 500.0) * glm::lookAt(eye, target, glm::dvec3(0.0, 0.0, 1.0)), {512.0, 512.0}};
+    const ScreenSpace screen(view, grid.localFromFrame(), ErrorDirection::Vertical);
+    const auto bound = [&](const ClipRect& region, const ClipRect& hole) {
+        return errors.screenError(screen, grid, boxes, 1, false, region, hole, 0.0f);
+    };
+    const ClipRect all{{0, 0}, {8, 8}}, nearHalf{{0, 0}, {8, 4}}, farHalf{{0, 4}, {8, 8}};
+    ASSERT_GT(bound(farHalf, {}), 0.0f);
+    EXPECT_LT(bound(farHalf, {}), 0.9f * bound(all, {}));
+    EXPECT_EQ(bound(all, nearHalf), bound(farHalf, {}));
+    EXPECT_EQ(bound(all, farHalf), bound(nearHalf, {}));
+    EXPECT_EQ(bound(nearHalf, {}), bound(all, {}));
+}
+
+TEST(ClipmapErrors, VerticesMayRiseTowardsHeightsOutsideOfTheRegion)
+{
+    // A slope along the border lifts vertex 1 of level 3 where that blends, from a region that begins there. Seen from above, it then
+    // is much nearer than all samples of the region.
+    const Terrain terrain{"Slope", mapOf(65, 65, [](int column, int) { return std::max(0.0f, 500.0f - 62.5f * float(column)); }), {}};
+    const SampleGrid grid = terrain.grid();
+    const Reference reference(grid);
+    const ClipmapErrors errors(grid, 6);
+    const BoxPyramid boxes(grid);
+    const glm::dvec3 target(grid.position(32, 32)), eye = target + glm::dvec3(0.0, 0.0, 600.0);
+    const View view{glm::perspective(1.0, 1.0, 0.5, 2000.0) * glm::lookAt(eye, target, glm::dvec3(0.0, 1.0, 0.0)), {512.0, 512.0}};
+    const ScreenSpace screen(view, grid.localFromFrame(), ErrorDirection::Vertical);
+    const Shot shot{view, 3, true, {{1, 3}, {2, 4}}, {}};
+    std::mt19937 random(9);
+    double worst = 0.0;
+    for (int i = 0; i < 50; ++i) worst = std::max(worst, worstDistance(grid, reference, shot, random));
+    ASSERT_GT(worst, 1.0);
+    EXPECT_GE(errors.screenError(screen, grid, boxes, shot.level, true, shot.region, {}, 0.0f), worst);
 }
 
 TEST(ClipmapErrors, BelowTheEyeBlocksAreCutUntilTheyHaveABound)
