@@ -182,8 +182,8 @@ TerrainTextureUse::Frame TerrainTextureUse::update(SoGLRenderAction * action, co
     View & view = find(ViewKey(action), element, frameNumber);
     if (view.problem.empty()) {
         const terrain::TiledImage::Size size = view.image->size();
-        const TextureFocus focus = findTextureFocus(state, camera, grid, attributes, {size.width, size.height});
-        const auto progress = view.clipmap->update(focus.place, focus.finestLevel, view.isNew ? 0 : element->getUpdateBudget());
+        const auto focus = findTextureFocus(state, camera, grid, attributes, {size.width, size.height});
+        const auto progress = view.clipmap->update(focus, view.isNew ? 0 : element->getUpdateBudget());
         if (!progress) {
             view.problem = progress.error().message();
         } else {

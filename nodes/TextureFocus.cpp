@@ -157,25 +157,10 @@ double texelsPerUnit(const terrain::SampleGrid & grid, const Coordinates & coord
     return most;
 }
 
-}  // namespace
-
-TextureFocus findTextureFocus(SoState * state, const terrain::View & camera, const terrain::SampleGrid & grid,
-                              const StateAttributes & attributes, glm::dvec2 texels)
+/// The finest level that shows anywhere.
+int finestLevelOf(const terrain::View & camera, const std::optional<glm::dvec3> & localEye, const terrain::SampleGrid & grid,
+                  const Coordinates & coordinates, glm::dvec2 place, glm::dvec2 texels)
 {
-    TextureFocus focus;
-    const Coordinates coordinates(state, grid, attributes);
-    const glm::dmat4 clipFromFrame = camera.clipFromLocal * grid.localFromFrame(), frameFromClip = glm::inverse(clipFromFrame);
-    const std::optional<glm::dvec3> eye = eyeOf(frameFromClip), localEye = eyeOf(glm::inverse(camera.clipFromLocal));
-    glm::dvec2 place = clampTo(grid, eye ? glm::dvec2(*eye) : glm::dvec2(std::numeric_limits<double>::quiet_NaN()));
-    if (grid.isRegular()) {
-        const double height = heightNear(grid, place);
-        if (!eye || !isInView(clipFromFrame, glm::dvec3(place, height)))
-            if (const auto seen = nearestInView(grid, frameFromClip, height, eye)) place = *seen;
-    } else if (localEye) {
-        place = nearestSample(grid, *localEye);
-    }
-    focus.place = coordinates.between(place);
-
     // Nearest ground to the eye, by samples all over and at the focus; what lies between may be nearer by half.
     double nearest = 1.0;
     if (localEye) {
@@ -184,12 +169,54 @@ TextureFocus findTextureFocus(SoState * state, const terrain::View & camera, con
             nearest = std::min(nearest, glm::length(glm::dvec3(grid.position(column, row)) - *localEye));
         };
         probe(grid, look);
-        look(int(place.x), int(place.y));
+        if (!grid.isHole(int(place.x), int(place.y))) look(int(place.x), int(place.y));
         nearest *= 0.5;
     }
     const terrain::ScreenSpace screen(camera, glm::dmat4(1.0), terrain::ErrorDirection::Any);
     const double pixelsPerUnit = double(screen.largestFactor()) / nearest;
     const double level = std::log2(texelsPerUnit(grid, coordinates, place, texels) / pixelsPerUnit);
-    focus.finestLevel = level > 0.0 ? int(std::min(level, 30.0)) : 0;
+    return level > 0.0 ? int(std::min(level, 30.0)) : 0;
+}
+
+/// How far ahead of the focus windows lie: by much of their size when looking to the horizon, not at all when looking down.
+glm::dvec2 leadOf(const terrain::SampleGrid & grid, const Coordinates & coordinates, glm::dvec2 place, const glm::dmat4 & frameFromClip,
+                  glm::dvec2 texels)
+{
+    // Leaves a part of the window to what lies beside and behind the focus, and for turning.
+    constexpr double kMost = 0.3;
+    const glm::dvec4 n = frameFromClip * glm::dvec4(0.0, 0.0, -1.0, 1.0), f = frameFromClip * glm::dvec4(0.0, 0.0, 1.0, 1.0);
+    const glm::dvec3 ray = glm::dvec3(f) / f.w - glm::dvec3(n) / n.w;
+    const glm::dmat4 & local = grid.localFromFrame();
+    const double along = glm::length(glm::dvec3(local * glm::dvec4(ray.x, ray.y, 0.0, 0.0))), all = glm::length(glm::dvec3(local * glm::dvec4(ray, 0.0)));
+    const double columns = std::max(std::abs(ray.x), std::abs(ray.y));
+    if (!(all > 0.0) || !(columns > 0.0)) return {0.0, 0.0};
+    // A cell ahead, or where there is none, behind.
+    const glm::dvec2 step = glm::dvec2(ray) / columns, ahead = clampTo(grid, place + step), behind = clampTo(grid, place - step);
+    const glm::dvec2 way = (coordinates.between(ahead) - coordinates.between(behind)) * texels;
+    const double length = glm::length(way);
+    if (!(length > 0.0) || !std::isfinite(length)) return {0.0, 0.0};
+    return way / length * (kMost * along / all);
+}
+
+}  // namespace
+
+terrain::TextureClipmap::Focus findTextureFocus(SoState * state, const terrain::View & camera, const terrain::SampleGrid & grid,
+                                                const StateAttributes & attributes, glm::dvec2 texels)
+{
+    terrain::TextureClipmap::Focus focus;
+    const Coordinates coordinates(state, grid, attributes);
+    const glm::dmat4 clipFromFrame = camera.clipFromLocal * grid.localFromFrame(), frameFromClip = glm::inverse(clipFromFrame);
+    const std::optional<glm::dvec3> eye = eyeOf(frameFromClip), localEye = eyeOf(glm::inverse(camera.clipFromLocal));
+    glm::dvec2 place = clampTo(grid, eye ? glm::dvec2(*eye) : glm::dvec2(std::numeric_limits<double>::quiet_NaN()));
+    if (grid.isRegular()) {
+        const double height = heightNear(grid, place);
+        if (!eye || !isInView(clipFromFrame, glm::dvec3(place, height)))
+            if (const auto seen = nearestInView(grid, frameFromClip, height, eye)) place = *seen;
+        if (eye) focus.lead = leadOf(grid, coordinates, place, frameFromClip, texels);
+    } else if (localEye) {
+        place = nearestSample(grid, *localEye);
+    }
+    focus.place = coordinates.between(place);
+    focus.finestLevel = finestLevelOf(camera, localEye, grid, coordinates, place, texels);
     return focus;
 }

@@ -5,19 +5,17 @@
 #include <glm/vec2.hpp>
 
 #include "base/View.h"
+#include "gl/TextureClipmap.h"
 #include "height/SampleGrid.h"
 
 class SoState;
 class StateAttributes;
 
-struct TextureFocus {
-    glm::dvec2 place{0.5, 0.5};  ///< in texture coordinates, after the texture matrix of unit 0
-    int finestLevel = 0;         ///< of an image of `texels`: finer levels show nowhere
-};
-
-/// The ground in view that is nearest to the viewer: his own place, or where the view first meets the plane that he stands on. For a curved grid the sample
-/// nearest to him. What is looked at from above by an orthographic camera is equally near everywhere; then it is the middle of the view.
-TextureFocus findTextureFocus(SoState * state, const terrain::View & camera, const terrain::SampleGrid & grid,
-                              const StateAttributes & attributes, glm::dvec2 texels);
+/// The ground in view that is nearest to the viewer: his own place, or where the view first meets the plane that he stands on; what lies
+/// ahead is more in view than what lies behind. For a curved grid it is the sample nearest to him. What is looked at by an orthographic
+/// camera is equally near everywhere; then it is the middle of the view. In texture coordinates after the texture matrix of unit 0.
+/// `texels`: the size of the image.
+terrain::TextureClipmap::Focus findTextureFocus(SoState * state, const terrain::View & camera, const terrain::SampleGrid & grid,
+                                                const StateAttributes & attributes, glm::dvec2 texels);
 
 #endif

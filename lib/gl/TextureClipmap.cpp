@@ -121,14 +121,16 @@ std::optional<Error> TextureClipmap::loadSmall() {
     return std::nullopt;
 }
 
-Window TextureClipmap::wantedAround(int level, glm::dvec2 focus) const {
+Window TextureClipmap::wantedAround(int level, const Focus& focus) const {
     const TiledImage::Size size = image_->size(level);
     // Where an axis of the level is all there, its window never moves.
-    const auto begin = [](double centre, int window, int all) {
-        return std::clamp(int(std::floor(centre * all)) - window / 2, 0, all - window);
+    const auto begin = [](double place, double lead, int window, int all) {
+        const double middle = place * all + std::clamp(lead, -0.5, 0.5) * window;
+        return std::clamp(int(std::floor(middle)) - window / 2, 0, all - window);
     };
     const int width = std::min(layer_.x, size.width), height = std::min(layer_.y, size.height);
-    const int x = begin(focus.x, width, size.width), y = begin(focus.y, height, size.height);
+    const int x = begin(focus.place.x, focus.lead.x, width, size.width),
+              y = begin(focus.place.y, focus.lead.y, height, size.height);
     return {x, y, x + width, y + height};
 }
 
@@ -190,20 +192,24 @@ std::optional<Error> TextureClipmap::moveWindow(int level, const Window& wanted,
     return std::nullopt;
 }
 
-Result<TextureClipmap::Progress> TextureClipmap::update(glm::dvec2 focus, int finestLevel, std::size_t texelBudget) {
+Result<TextureClipmap::Progress> TextureClipmap::update(const Focus& focus, std::size_t texelBudget) {
     const UploadScope scope;
     if (small_ == 0)
         if (auto problem = create()) return *problem;
     Progress progress;
     if (windows_.empty()) return progress;
-    if (!std::isfinite(focus.x) || !std::isfinite(focus.y)) focus = {0.5, 0.5};
+    const auto sane = [](double value, double low, double high) {
+        return std::isfinite(value) ? std::clamp(value, low, high) : 0.5 * (low + high);
+    };
     // Rows count from the top.
-    const glm::dvec2 centre{std::clamp(focus.x, 0.0, 1.0), 1.0 - std::clamp(focus.y, 0.0, 1.0)};
+    const Focus turned{{sane(focus.place.x, 0.0, 1.0), 1.0 - sane(focus.place.y, 0.0, 1.0)},
+                       {sane(focus.lead.x, -0.5, 0.5), -sane(focus.lead.y, -0.5, 0.5)},
+                       focus.finestLevel};
     const std::size_t budget = texelBudget > 0 ? texelBudget : std::numeric_limits<std::size_t>::max();
     glBindTexture(GL_TEXTURE_2D_ARRAY, array_);
-    for (int level = levels() - 1; level >= std::max(0, finestLevel); --level) {
-        const int row = int(centre.y * image_->size(level).height);
-        if (auto problem = moveWindow(level, wantedAround(level, centre), row, budget, progress)) return *problem;
+    for (int level = levels() - 1; level >= std::max(0, focus.finestLevel); --level) {
+        const int row = int(turned.place.y * image_->size(level).height);
+        if (auto problem = moveWindow(level, wantedAround(level, turned), row, budget, progress)) return *problem;
     }
     return progress;
 }
@@ -288,7 +294,7 @@ TextureClipmap::Binding::Binding(const TextureClipmap& clipmap, GLuint program, 
     glUniform1i(place("terrainTextureLayers"), firstUnit + 1);
     glUniform1i(place("terrainTextureLevels"), levels);
     glUniform2f(place("terrainTextureLayerSize"), float(clipmap.layer_.x), float(clipmap.layer_.y));
-    glUniform1f(place("terrainTextureBlend"), 10.0f / float(clipmap.clipSize()));
+    glUniform1f(place("terrainTextureBlend"), 16.0f / float(clipmap.clipSize()));
     glUniform2f(place("terrainTextureImage"), float(clipmap.image().size().width), float(clipmap.image().size().height));
     if (levels == 0) return;
     glUniform2fv(place("terrainTextureSize"), levels, &sizes[0].x);

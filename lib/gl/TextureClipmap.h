@@ -50,12 +50,21 @@ public:
         bool complete = true;    ///< false: the budget was spent before all that is wanted was there
     };
 
-    /// Moves the windows and loads what they newly cover, from coarse to fine, each texel once. `focus` in texture coordinates:
-    /// (0, 0) is the image's lower left corner, (1, 1) the upper right one. Levels below `finestLevel` are not needed: they stay as
+    /// What is looked at.
+    struct Focus {
+        /// In texture coordinates: (0, 0) is the image's lower left corner, (1, 1) the upper right one.
+        glm::dvec2 place{0.5, 0.5};
+        /// Where the middle of a window lies from there, as a part of its width and height; each at most 0.5.
+        glm::dvec2 lead{0.0, 0.0};
+        /// Finer levels are not needed.
+        int finestLevel = 0;
+    };
+
+    /// Moves the windows and loads what they newly cover, from coarse to fine, each texel once. Levels that are not needed stay as
     /// they are. `texelBudget`: most texels to load, but at least one line of a window; 0: no limit. The small levels are loaded at
-    /// once in the first call, without counting.
-    /// Error: the image can't be read, or GL is too old; the clipmap must not be used then. GL's state is what it was.
-    Result<Progress> update(glm::dvec2 focus, int finestLevel, std::size_t texelBudget);
+    /// once in the first call, without counting. Error: the image can't be read, or GL is too old; the clipmap must not be used
+    /// then. GL's state is what it was.
+    Result<Progress> update(const Focus& focus, std::size_t texelBudget);
 
     /// GLSL 1.30, to be put into a fragment shader behind "#version 130" or later: declares the uniforms and
     /// `vec4 terrainTexture(vec2 st)`, the colour at texture coordinates st, clamped to [0, 1]. The level is that which the
@@ -99,7 +108,7 @@ private:
     std::optional<Error> load(int level, const Window& part);
     std::optional<Error> moveWindow(int level, const Window& wanted, int focusRow, std::size_t budget, Progress& progress);
     void fitClipSize();
-    Window wantedAround(int level, glm::dvec2 focus) const;
+    Window wantedAround(int level, const Focus& focus) const;
 
     std::shared_ptr<const TiledImage> image_;
     int clipSize_;
