@@ -29,7 +29,7 @@ BoxPyramid::Bounds withDetail(const BoxPyramid& boxes, const SynthesisedDetail& 
     const int cells = BoxPyramid::kBlockCells << level;
     const BoxPyramid::Bounds around =
         boxes.bounds(column * cells - kReach, row * cells - kReach, (column + 1) * cells + kReach, (row + 1) * cells + kReach);
-    const float over = detail.overshoot(0, around.high.z - around.low.z) + roundingOf(around, detail);
+    const float over = detail.overshoot(0, around.high.z - around.low.z, boxes.hasHoles()) + roundingOf(around, detail);
     block.low.z -= over;
     block.high.z += over;
     return block;
@@ -41,15 +41,17 @@ struct Patch {
     ClipRect rect;
     std::array<float, kMost * kMost> heights;
     float step = 0.0f;  ///< largest difference of neighbours
+    bool holes = false;
 
     float at(glm::ivec2 v) const { return heights[std::size_t((v.y - rect.low.y) * rect.columns() + v.x - rect.low.x)]; }
-    void findStep() {
+    void describe() {
         // Comparisons with holes are false.
         const int columns = rect.columns(), count = int(rect.samples());
         const auto include = [this](int a, int b) {
             if (const float d = std::fabs(heights[std::size_t(a)] - heights[std::size_t(b)]); d > step) step = d;
         };
         for (int i = 0; i < count; ++i) {
+            holes = holes || std::isnan(heights[std::size_t(i)]);
             if (i % columns > 0) include(i, i - 1);
             if (i >= columns) include(i, i - columns);
         }
@@ -90,7 +92,7 @@ private:
                 Patch patch;
                 patch.rect = within(0, {glm::ivec2(x, y) - 2, glm::ivec2(x, y) + 3});
                 detail_.fill(grid_, 0, patch.rect, patch.heights.data());
-                patch.findStep();
+                patch.describe();
                 testCell(0, {x, y}, patch);
             }
     }
@@ -103,7 +105,7 @@ private:
         const float z[4] = {patch.at(cell), patch.at(cell + glm::ivec2(1, 0)), patch.at(cell + glm::ivec2(0, 1)),
                             patch.at(cell + 1)};
         const double spacing = 1.0 / double(1 << level);
-        const double room = double(detail_.overshoot(level, patch.step)) + double(rounding_);
+        const double room = double(detail_.overshoot(level, patch.step, patch.holes)) + double(rounding_);
         const glm::dvec2 low = glm::dvec2(cell) * spacing;
         if (!line_.meets({low, double(*std::min_element(z, z + 4)) - room},
                          {low + spacing, double(*std::max_element(z, z + 4)) + room}, slack_))
@@ -112,7 +114,7 @@ private:
         Patch finer;
         finer.rect = within(level + 1, {2 * cell - 2, 2 * cell + 4});
         detail_.refine(grid_, level + 1, finer.rect, patch.rect, patch.heights.data(), finer.heights.data());
-        finer.findStep();
+        finer.describe();
         for (int i = 0; i < 4; ++i) testCell(level + 1, 2 * cell + glm::ivec2(i & 1, i >> 1), finer);
     }
 

@@ -175,14 +175,24 @@ float SynthesisedDetail::height(const SampleGrid& grid, double column, double ro
     return float(z11 + (1.0 - u) * (z01 - z11) + (1.0 - v) * (z10 - z11));
 }
 
-SynthesisedDetail::Sums SynthesisedDetail::sums(int level, float step) const {
-    Sums sums{0.0f, 0.0f};
+SynthesisedDetail::Sums SynthesisedDetail::sums(int level, float step, bool holes) const {
     const float strongest = *std::max_element(table_.begin(), table_.end());
+    Sums sums{0.0f, 0.0f};
+    if (level < levels_ && !holes) {
+        const float bend = kBend * (1.0f + kGain) * step;
+        sums = {bend + 0.5f * step, bend};
+    }
     for (int d = level + 1; d <= levels_; ++d) {
         const float noise = strongest * noiseScale(d);
-        sums.deviation += 25.0f / 32.0f * step + noise;
-        sums.overshoot += 9.0f / 32.0f * step + noise;
-        step = 25.0f / 32.0f * step + 2.0f * noise;
+        if (holes) {
+            sums.deviation += 25.0f / 32.0f * step + noise;
+            sums.overshoot += 9.0f / 32.0f * step + noise;
+            step = 25.0f / 32.0f * step + 2.0f * noise;
+        } else {
+            const float grown = d < levels_ ? noise * kGain * kGain : noise;
+            sums.deviation += grown;
+            sums.overshoot += grown;
+        }
     }
     return sums;
 }

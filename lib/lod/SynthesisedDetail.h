@@ -69,22 +69,32 @@ public:
     const NoiseTable& noiseTable() const { return table_; }
 
     /// How far the detail's heights lie from the full-resolution surface of the samples at the most, where neighbouring samples
-    /// differ by `step` or less within two samples around. Rounding (levels() * 4 ulp) is not in it.
+    /// differ by `step` or less within two samples around. Larger where a hole may be among these. Rounding (levels() * 4 ulp) is
+    /// not in it.
     ///
-    /// Of heights with steps D on level d - 1, a row's new ones are within D / 8 of the middle of their neighbours and 5 / 8 D of
-    /// each, whichever of the outer two are there. Columns of such rows have steps 5 / 4 D, so those odd on both axes are within
-    /// 9 / 32 D of a mean of four, within 25 / 32 D of the diagonal, and of their neighbours too; noise n adds n and to steps 2 n.
-    float largest(float step) const { return sums(0, step).deviation; }
-    /// How far the finest level's heights in a cell of `level` lie outside of the range of its corners, likewise: steps are those
-    /// of that level, within two of its vertices around.
-    float overshoot(int level, float step) const { return sums(level, step).overshoot; }
+    /// Subdivision of a row, however it ends, makes largest heights kGain times as large at most, and of steps D heights within
+    /// kBend D of the straight lines (sums over its weights, which a test adds up). So those of rows and then columns are within
+    /// kBend (1 + kGain) D of the bilinear interpolation, which is within D / 2 of the cell's triangles; and noise grows by kGain
+    /// on each axis.
+    ///
+    /// Which weights there are in the midst of holes depends on both axes. Whichever of a and d there are, new heights of a row are
+    /// within D / 8 of the middle of their neighbours and 5 / 8 D of each. Columns of such rows have steps 5 / 4 D, so heights odd
+    /// on both axes are within 9 / 32 D of a mean of four, within 25 / 32 D of the diagonal, and of their neighbours too; noise n
+    /// adds n, and 2 n to steps. That is summed over the levels.
+    float largest(float step, bool holes = true) const { return sums(0, step, holes).deviation; }
+    /// How far the finest level's heights in a cell of `level` lie outside of the range of its corners, likewise: steps and holes
+    /// are those of that level, within two of its vertices around.
+    float overshoot(int level, float step, bool holes = true) const { return sums(level, step, holes).overshoot; }
+
+    static constexpr float kGain = 1.2512f;
+    static constexpr float kBend = 0.1412f;
 
 private:
     struct Sums {
         float deviation;
         float overshoot;
     };
-    Sums sums(int level, float step) const;
+    Sums sums(int level, float step, bool holes) const;
     void readSamples(const SampleGrid& grid, const ClipRect& rect, float* out) const;
     void fillWithin(const SampleGrid& grid, int level, const ClipRect& rect, float* out) const;
 

@@ -96,7 +96,8 @@ TEST_P(DetailCastOver, HitsExactlyTheFinestTriangles)
         for (const RayHit& h : hits)
             ASSERT_TRUE(std::any_of(expected.begin(), expected.end(), [&](const NaiveHit& e) { return same(h, e); }))
                 << "ray " << i << " hits cell " << h.column << ", " << h.row << ", which is not on its way";
-        ASSERT_TRUE(std::is_sorted(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) { return a.distance < b.distance; }));
+        const auto nearer = [](const RayHit& a, const RayHit& b) { return a.distance < b.distance; };
+        ASSERT_TRUE(std::is_sorted(hits.begin(), hits.end(), nearer));
     }
     EXPECT_TRUE(total > 0 || boxes.all().isEmpty());
 }
@@ -117,7 +118,8 @@ TEST_P(DetailCastOver, DescribesItsHitsByTheSamplesTriangles)
             ASSERT_NEAR(place.x, h.point.x, 1e-6);
             ASSERT_NEAR(place.y, h.point.y, 1e-6);
             ASSERT_NEAR(h.barycentric[0] + h.barycentric[1] + h.barycentric[2], 1.0, 1e-9);
-            const glm::dvec2 inside = glm::clamp(glm::dvec2(h.point), glm::dvec2(0.0), glm::dvec2(grid.columns() - 1, grid.rows() - 1));
+            const glm::dvec2 last(grid.columns() - 1, grid.rows() - 1);
+            const glm::dvec2 inside = glm::clamp(glm::dvec2(h.point), glm::dvec2(0.0), last);
             const float height = detail.height(grid, inside.x, inside.y);
             // Of a hit on the border of a hole the place may be in the hole.
             if (!std::isnan(height)) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lod/BoxPyramid.h"
 #include "lod/BruteForceMesh.h"
 #include "lod/RayCast.h"
 #include "lod/SynthesisedDetail.h"
@@ -76,7 +77,8 @@ TEST_P(DetailOf, KeepsTheVerticesOfTheLevelBefore)
         const std::vector<float> heights = filled(detail, grid, level, all);
         const std::size_t columns = std::size_t(all.columns()), coarse = (columns + 1) / 2;
         for (std::size_t y = 0; y < std::size_t(all.rows()); y += 2)
-            for (std::size_t x = 0; x < columns; x += 2) ASSERT_TRUE(sameBits(heights[y * columns + x], before[y / 2 * coarse + x / 2]));
+            for (std::size_t x = 0; x < columns; x += 2)
+                ASSERT_TRUE(sameBits(heights[y * columns + x], before[y / 2 * coarse + x / 2]));
         before = heights;
     }
 }
@@ -129,10 +131,11 @@ TEST_P(DetailOf, HasHolesJustWhereCellsOfSamplesHaveOne)
 TEST_P(DetailOf, StaysWithinItsBoundOfTheSurfaceOfTheSamples)
 {
     const float step = largestStep(grid);
+    const bool holes = BoxPyramid(grid).hasHoles();
     for (const float amplitude : {0.0f, 2.0f, -1.0f})
         for (const int levels : {1, 2, 5}) {
             const SynthesisedDetail detail(grid, {levels, amplitude, 77});
-            const float bound = detail.largest(step) + 1e-4f;
+            const float bound = detail.largest(step, holes) + 1e-4f;
             const ClipRect all = whole(grid, levels);
             const std::vector<float> heights = filled(detail, grid, levels, all);
             std::size_t at = 0;
@@ -156,7 +159,8 @@ TEST_P(DetailOf, LeavesACellsHeightsByNoMoreThanItsOvershoot)
                 const glm::ivec2 cell(uniformInt(random, 0, all.high.x - 1), uniformInt(random, 0, all.high.y - 1));
                 const ClipRect around = ClipRect{cell - 2, cell + 3}.cutTo(all);
                 HeightMap map{around.columns(), around.rows(), filled(detail, grid, level, around), {}, {1.0, 1.0}, {}};
-                const float room = detail.overshoot(level, largestStep(SampleGrid(map))) + 1e-4f;
+                const bool holes = std::any_of(map.heights.begin(), map.heights.end(), [](float h) { return std::isnan(h); });
+                const float room = detail.overshoot(level, largestStep(SampleGrid(map)), holes) + 1e-4f;
                 const std::vector<float> corners = filled(detail, grid, level, {cell, cell + 1});
                 const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
                 if (std::isnan(corners[0] + corners[1] + corners[2] + corners[3])) continue;
@@ -200,6 +204,55 @@ TEST_P(DetailOf, WithoutLevelsIsTheSamplesSurface)
 
 INSTANTIATE_TEST_SUITE_P(Terrains, DetailOf, testing::ValuesIn(regularTerrains()),
                          [](const testing::TestParamInfo<Terrain>& info) { return info.param.name; });
+
+TEST(SynthesisedDetail, RowsGrowAndBendByNoMoreThanTheBoundsConstants)
+{
+    // Rows of up to nine samples have all ends that a cell can feel, on both sides.
+    double gain = 0.0, bend = 0.0;
+    constexpr int levels = 8, cells = 1 << levels;
+    for (int samples = 2; samples <= 9; ++samples) {
+        std::vector<std::vector<float>> weight;
+        for (int i = 0; i < samples; ++i) {
+            const HeightMap map = mapOf(samples, 2, [i](int column, int) { return column == i ? 1.0f : 0.0f; });
+            const SampleGrid grid(map);
+            const SynthesisedDetail detail(grid, {levels, -1.0f, 0});
+            weight.push_back(filled(detail, grid, levels, {{0, 0}, {(samples - 1) * cells, 0}}));
+        }
+        for (int x = 0; x <= (samples - 1) * cells; ++x) {
+            // Of sum (w_i - linear_i) f_i, by the differences of f.
+            double sum = 0.0, partial = 0.0, differences = 0.0;
+            for (int i = 0; i < samples; ++i) {
+                const double w = double(weight[std::size_t(i)][std::size_t(x)]);
+                sum += std::fabs(w);
+                partial += w - std::max(0.0, 1.0 - std::fabs(double(x) / cells - i));
+                differences += std::fabs(partial);
+            }
+            gain = std::max(gain, sum);
+            bend = std::max(bend, differences);
+        }
+    }
+    EXPECT_LE(gain, double(SynthesisedDetail::kGain));
+    EXPECT_GE(gain, 0.999 * double(SynthesisedDetail::kGain));
+    EXPECT_LE(bend, double(SynthesisedDetail::kBend));
+    EXPECT_GE(bend, 0.999 * double(SynthesisedDetail::kBend));
+}
+
+TEST(SynthesisedDetail, BoundsAreNotMuchLargerThanNeeded)
+{
+    // A chessboard of hills is the worst that steps allow.
+    const HeightMap map = mapOf(17, 17, [](int column, int row) { return float((column + row) % 2); });
+    const SampleGrid grid(map);
+    const SynthesisedDetail detail(grid, {3, -1.0f, 0});
+    float deviation = 0.0f;
+    for (int y = 0; y <= 128; ++y)
+        for (int x = 0; x <= 128; ++x) {
+            const float height = detail.height(grid, x / 8.0, y / 8.0);
+            deviation = std::max(deviation, std::fabs(height - surfaceAt(grid, {x / 8.0, y / 8.0})->height));
+        }
+    EXPECT_LE(deviation, detail.largest(1.0f, false));
+    EXPECT_GE(deviation, 0.5f * detail.largest(1.0f, false));
+    EXPECT_LT(detail.largest(1.0f, false), detail.largest(1.0f));
+}
 
 TEST(SynthesisedDetail, WithoutNoiseIsTheFourPointSubdivision)
 {
