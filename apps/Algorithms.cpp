@@ -7,6 +7,7 @@ namespace {
 constexpr Algorithm table[] = {
     {"bruteforce", "SoBruteForceTerrain", Feed::HeightMap, "everything, from static buffers"},
     {"chunkedlod", "SoChunkedLoDTerrain", Feed::HeightMap, "chunked level of detail, tiles of -g cells"},
+    {"clipmap", "SoGeometryClipmapTerrain", Feed::HeightMap, "geometry clipmaps, nested grids around the viewer"},
     {"geomipmapping", "SoGeoMipmapTerrain", Feed::HeightMap, "geometrical mip-mapping, blocks of -g cells"},
     {"roam", "SoROAMTerrain", Feed::HeightMap, "real-time optimally adapting meshes"},
     {"indexedfaceset", "SoIndexedFaceSet", Feed::IndexedFaceSet, "Coin's own triangles, for comparison"},

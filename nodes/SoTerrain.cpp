@@ -3,6 +3,7 @@
 #include <SoTerrain/SoBruteForceTerrain.h>
 #include <SoTerrain/SoChunkedLoDTerrain.h>
 #include <SoTerrain/SoGeoMipmapTerrain.h>
+#include <SoTerrain/SoGeometryClipmapTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoROAMTerrain.h>
@@ -26,6 +27,7 @@ void SoTerrain::init()
     SoBruteForceTerrain::initClass();
     SoChunkedLoDTerrain::initClass();
     SoGeoMipmapTerrain::initClass();
+    SoGeometryClipmapTerrain::initClass();
     SoROAMTerrain::initClass();
 }
 

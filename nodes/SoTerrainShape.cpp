@@ -91,6 +91,7 @@
 #include <glm/matrix.hpp>
 
 #include "StateAttributes.h"
+#include "TerrainFrame.h"
 #include "lod/BruteForceMesh.h"
 #include "lod/DetailCast.h"
 #include "lod/UpperSide.h"
@@ -183,6 +184,11 @@ int SoTerrainShape::validTileSize(int wanted, int least, int most) const
 
 void SoTerrainShape::getSettings(terrain::LodSettings &) const {}
 
+SbBool SoTerrainShape::renderOwn(const TerrainFrame &, SoTerrainStatistics &)
+{
+    return FALSE;
+}
+
 void SoTerrainShape::discardMeshes()
 {
     ++pimpl->meshVersion;
@@ -235,11 +241,11 @@ terrain::LodSettings SoTerrainShape::Private::settingsFor(SoState * state, const
     return settings;
 }
 
-void SoTerrainShape::Private::select(TerrainView & view, const terrain::View & camera, SoState * state, const TerrainGrid & data,
-                                     const StateAttributes & attributes)
+void SoTerrainShape::Private::select(TerrainView & view, const terrain::View & camera, const terrain::LodSettings & settings,
+                                     const TerrainGrid & data, const StateAttributes & attributes)
 {
     const Clock::time_point start = Clock::now();
-    const terrain::DrawList list = view.algorithm->select(data.grid, camera, settingsFor(state, data));
+    const terrain::DrawList list = view.algorithm->select(data.grid, camera, settings);
     statistics.selectMilliseconds = millisecondsSince(start);
     view.report = list.report;
     const Clock::time_point selected = Clock::now();
@@ -266,48 +272,60 @@ bool SoTerrainShape::Private::hidesUndersides(const TerrainView & view, const te
     return terrain::showsUpperSideOnly(data.grid, *data.model.boxes, camera);
 }
 
+void SoTerrainShape::Private::renderMesh(const TerrainFrame & frame)
+{
+    TerrainView & view = frame.view;
+    if (!view.algorithm) {
+        const Clock::time_point start = Clock::now();
+        view.algorithm = master->createAlgorithm(frame.data.model, frame.data.grid);
+        view.hasMesh = false;
+        statistics.buildMilliseconds += millisecondsSince(start);
+    }
+    if (!master->freeze.getValue() || !view.hasMesh) select(view, frame.camera, frame.settings, frame.data, frame.attributes);
+    const Clock::time_point start = Clock::now();
+    if (frame.attributes.hasOverallNormal()) glNormal3fv(frame.attributes.normal(0, 0).getValue());
+    SoState * state = frame.action->getState();
+    const bool cull = !glIsEnabled(GL_CULL_FACE) && hidesUndersides(view, frame.camera, state, frame.data);
+    if (cull) glEnable(GL_CULL_FACE);
+    {
+        const TerrainTextureUse::FixedFunction tiled(frame.texture);
+        view.renderer.draw();
+    }
+    if (cull) glDisable(GL_CULL_FACE);
+    if (frame.attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
+    statistics.drawMilliseconds = millisecondsSince(start);
+    statistics.triangles = view.renderer.triangles();
+    statistics.drawCalls = view.renderer.triangles() > 0 ? 1 : 0;
+    statistics.patches = view.renderer.triangles() > 0 ? view.report.patches : 0;
+}
+
 void SoTerrainShape::Private::render(SoGLRenderAction * action)
 {
     SoState * state = action->getState();
     const std::optional<TerrainGrid> data = findGrid(state, master->needsErrors());
     if (!data || data->model.boxes->all().isEmpty()) return;
-    const std::uint64_t frame = statistics.frame + 1;
+    const std::uint64_t number = statistics.frame + 1;
     statistics = SoTerrainStatistics{};
-    statistics.frame = frame;
+    statistics.frame = number;
     statistics.buildMilliseconds = data->buildMilliseconds;
 
-    TerrainView & view = views.find(ViewKey(action), frame);
+    TerrainView & view = views.find(ViewKey(action), number);
     if (view.boxes != data->model.boxes || view.meshVersion != meshVersion) {
-        const Clock::time_point start = Clock::now();
         view.boxes = data->model.boxes;
         view.meshVersion = meshVersion;
-        view.algorithm = master->createAlgorithm(data->model, data->grid);
-        view.hasMesh = false;
-        statistics.buildMilliseconds += millisecondsSince(start);
+        view.algorithm.reset();
+        TerrainViews::discardDrawing(view);
     }
     SoMaterialBundle materials(action);
     materials.sendFirst();
     const StateAttributes attributes(action, data->grid, true);
     for (const std::string & problem : attributes.problems()) master->warnOnce(problem.c_str());
     const terrain::View camera = viewOf(state);
-    if (!master->freeze.getValue() || !view.hasMesh) select(view, camera, state, *data, attributes);
-    const TerrainTextureUse::Frame texture = textures.update(action, camera, data->grid, attributes, frame);
+    const TerrainTextureUse::Frame texture = textures.update(action, camera, data->grid, attributes, number);
     if (!texture.problem.empty()) master->warnOnce(texture.problem.c_str());
+    const TerrainFrame frame{action, *data, camera, settingsFor(state, *data), attributes, texture, view};
+    if (!master->renderOwn(frame, statistics)) renderMesh(frame);
 
-    const Clock::time_point start = Clock::now();
-    if (attributes.hasOverallNormal()) glNormal3fv(attributes.normal(0, 0).getValue());
-    const bool cull = !glIsEnabled(GL_CULL_FACE) && hidesUndersides(view, camera, state, *data);
-    if (cull) glEnable(GL_CULL_FACE);
-    {
-        const TerrainTextureUse::FixedFunction tiled(texture);
-        view.renderer.draw();
-    }
-    if (cull) glDisable(GL_CULL_FACE);
-    if (attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
-    statistics.drawMilliseconds = millisecondsSince(start);
-
-    statistics.triangles = view.renderer.triangles();
-    statistics.patches = view.renderer.triangles() > 0 ? view.report.patches : 0;
     statistics.converged = view.report.converged && texture.converged;
     statistics.uploadedBytes += texture.uploadedBytes;
     statistics.errorPixels = view.report.errorPixels;

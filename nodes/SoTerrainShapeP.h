@@ -15,6 +15,7 @@
 #include "TerrainViews.h"
 
 class StateAttributes;
+struct TerrainFrame;
 
 class SoTerrainShape::Private {
 public:
@@ -24,8 +25,10 @@ public:
     std::optional<TerrainGrid> findGrid(SoState * state, bool withErrors);
     void render(SoGLRenderAction * action);
     terrain::LodSettings settingsFor(SoState * state, const TerrainGrid & data) const;
-    void select(TerrainView & view, const terrain::View & camera, SoState * state, const TerrainGrid & data,
+    void select(TerrainView & view, const terrain::View & camera, const terrain::LodSettings & settings, const TerrainGrid & data,
                 const StateAttributes & attributes);
+    /// Draws from the view's mesh.
+    void renderMesh(const TerrainFrame & frame);
     /// Whether undersides of triangles are hidden by upper sides, so that GL may leave them out and the picture stays the same.
     bool hidesUndersides(const TerrainView & view, const terrain::View & camera, SoState * state, const TerrainGrid & data) const;
 

@@ -148,6 +148,22 @@ SbVec2f StateAttributes::textureCoordinate(int unit, int column, int row) const
     return SbVec2f(float(column) / float(grid_.columns() - 1), float(row) / float(grid_.rows() - 1));
 }
 
+bool StateAttributes::hasAffineTextureCoordinates(int unit) const
+{
+    if (textureCoordinates_->getType(unit) != SoMultiTextureCoordinateElement::EXPLICIT) return true;
+    const int columns = grid_.columns() - 1, rows = grid_.rows() - 1;
+    const SbVec2f origin = textureCoordinate(unit, 0, 0);
+    const SbVec2f alongRow = (textureCoordinate(unit, columns, 0) - origin) / float(columns);
+    const SbVec2f alongColumn = (textureCoordinate(unit, 0, rows) - origin) / float(rows);
+    constexpr float kTolerance = 1e-3f;
+    for (int row = 0; row <= rows; ++row)
+        for (int column = 0; column <= columns; ++column) {
+            const SbVec2f off = textureCoordinate(unit, column, row) - (origin + alongRow * float(column) + alongColumn * float(row));
+            if (!(std::fabs(off[0]) <= kTolerance && std::fabs(off[1]) <= kTolerance)) return false;
+        }
+    return true;
+}
+
 int StateAttributes::materialIndex(int column, int row) const
 {
     return boundIndex(materialBinding_, column, row, lazy_->getNumDiffuse());

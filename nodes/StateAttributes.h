@@ -38,6 +38,8 @@ public:
     bool hasExplicitNormals() const { return normalBinding_ != GENERATED; }
     SbVec3f normal(int column, int row) const;
     SbVec2f textureCoordinate(int unit, int column, int row) const;
+    /// Whether texture coordinates are a linear function of columns and rows, to within a thousandth of the texture.
+    bool hasAffineTextureCoordinates(int unit) const;
     /// Index into the state's materials.
     int materialIndex(int column, int row) const;
 

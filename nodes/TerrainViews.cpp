@@ -22,10 +22,17 @@ std::uint64_t hashOf(const SoFullPath * path)
     return hash;
 }
 
-void deleteBuffer(void * closure, uint32_t)
+void deleteLater(void * closure, uint32_t)
 {
-    const GLuint name = GLuint(reinterpret_cast<std::uintptr_t>(closure));
-    glDeleteBuffers(1, &name);
+    const std::unique_ptr<terrain::GlName> name(static_cast<terrain::GlName *>(closure));
+    terrain::deleteNames({name.get(), 1});
+}
+
+std::vector<terrain::GlName> namesOf(TerrainView & view)
+{
+    std::vector<terrain::GlName> names = view.drawing ? view.drawing->release() : std::vector<terrain::GlName>();
+    for (const GLuint buffer : view.renderer.release()) names.push_back({terrain::GlName::Buffer, buffer});
+    return names;
 }
 
 }  // namespace
@@ -57,16 +64,21 @@ void TerrainViews::contextGoes(std::uint32_t context, void * closure)
     for (const auto & view : views) {
         if (view->key.context != context) continue;
         // Coin makes the context current before it tells.
-        const std::vector<GLuint> names = view->renderer.release();
-        glDeleteBuffers(GLsizei(names.size()), names.data());
+        terrain::deleteNames(namesOf(*view));
     }
     std::erase_if(views, [context](const auto & view) { return view->key.context == context; });
 }
 
 void TerrainViews::giveUp(TerrainView & view)
 {
-    for (const GLuint name : view.renderer.release())
-        SoGLCacheContextElement::scheduleDeleteCallback(view.key.context, deleteBuffer, reinterpret_cast<void *>(std::uintptr_t(name)));
+    for (const terrain::GlName & name : namesOf(view))
+        SoGLCacheContextElement::scheduleDeleteCallback(view.key.context, deleteLater, new terrain::GlName(name));
+}
+
+void TerrainViews::discardDrawing(TerrainView & view)
+{
+    if (view.drawing) terrain::deleteNames(view.drawing->release());
+    view.drawing.reset();
 }
 
 TerrainView & TerrainViews::find(const ViewKey & key, std::uint64_t frame)
@@ -91,13 +103,14 @@ TerrainView & TerrainViews::find(const ViewKey & key, std::uint64_t frame)
 std::size_t TerrainViews::memoryBytes() const
 {
     std::size_t total = 0;
-    for (const auto & view : views_) total += (view->algorithm ? view->algorithm->bytes() : 0) + view->renderer.memoryBytes();
+    for (const auto & view : views_) total += (view->algorithm ? view->algorithm->bytes() : 0) + view->renderer.memoryBytes() +
+                                          (view->drawing ? view->drawing->memoryBytes() : 0);
     return total;
 }
 
 std::size_t TerrainViews::bufferBytes() const
 {
     std::size_t total = 0;
-    for (const auto & view : views_) total += view->renderer.bufferBytes();
+    for (const auto & view : views_) total += view->renderer.bufferBytes() + (view->drawing ? view->drawing->bufferBytes() : 0);
     return total;
 }

@@ -8,6 +8,7 @@
 
 #include <Inventor/SbVec2s.h>
 
+#include "gl/GlProgram.h"
 #include "gl/TerrainRenderer.h"
 #include "lod/LodAlgorithm.h"
 #include "lod/TerrainModel.h"
@@ -25,12 +26,23 @@ struct ViewKey {
     bool operator==(const ViewKey & other) const = default;
 };
 
+/// What a node keeps of a view that it draws with programs of its own.
+class ViewDrawing {
+public:
+    virtual ~ViewDrawing() = default;
+    /// All GL objects, which are the caller's to delete.
+    virtual std::vector<terrain::GlName> release() = 0;
+    virtual std::size_t memoryBytes() const = 0;
+    virtual std::size_t bufferBytes() const = 0;
+};
+
 struct TerrainView {
     ViewKey key;
     std::shared_ptr<const terrain::BoxPyramid> boxes;  ///< names the data that the mesh belongs to
     std::uint64_t meshVersion = 0;                     ///< SoTerrainShape::Private::meshVersion when it was made
     std::unique_ptr<terrain::LodAlgorithm> algorithm;
     terrain::TerrainRenderer renderer;
+    std::unique_ptr<ViewDrawing> drawing;  ///< of a node that draws itself
     terrain::SelectionReport report;  ///< of the latest selection
     bool hasMesh = false;
     std::uint64_t lastFrame = 0;
@@ -48,6 +60,8 @@ public:
 
     /// The view with this key, new if need be. Views that were not drawn for long are given up.
     TerrainView & find(const ViewKey & key, std::uint64_t frame);
+    /// Gives up what a node has drawn a view with, whose context must be current.
+    static void discardDrawing(TerrainView & view);
     std::size_t memoryBytes() const;
     std::size_t bufferBytes() const;
 

@@ -38,13 +38,21 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
     uploaded_ += count * (sizeof(glm::vec3) + stride);
 }
 
+void TerrainRenderer::write(const DrawList& list, const VertexSource& source, std::size_t vertex) {
+    std::uint8_t* out = mirror_.data() + vertex * format_.stride();
+    if (list.places.empty())
+        source.write(list.samples[vertex], out);
+    else
+        source.writeAt(list.places[vertex], list.samples[vertex], out);
+}
+
 void TerrainRenderer::writeNew(const DrawList& list, const VertexSource& source) {
     // New vertices lie all over arrays that no cache holds.
     constexpr std::size_t kAhead = 8;
     const auto vertices = list.newVertices;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (i + kAhead < vertices.size()) source.prefetch(list.samples[vertices[i + kAhead]]);
-        source.write(list.samples[vertices[i]], mirror_.data() + vertices[i] * format_.stride());
+        write(list, source, vertices[i]);
     }
 }
 
@@ -60,7 +68,7 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
     mirror_.resize(size);
     if (everything)
         for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex)
-            source.write(list.samples[vertex], mirror_.data() + vertex * stride);
+            write(list, source, vertex);
     else
         writeNew(list, source);
     attributes_.refill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size());

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "gl/GlObjects.h"
 #include "height/SampleGrid.h"
 #include "lod/DrawList.h"
@@ -31,6 +33,9 @@ public:
     virtual std::uint64_t version() const = 0;
     /// `out` has format().stride() bytes.
     virtual void write(std::uint32_t sample, std::uint8_t* out) const = 0;
+    /// The same at a place between samples, (column, row) in the grid; `nearest` is the sample nearest to it, which serves where
+    /// there is nothing better.
+    virtual void writeAt(glm::vec2 /*place*/, std::uint32_t nearest, std::uint8_t* out) const { write(nearest, out); }
     /// The sample will soon be written.
     virtual void prefetch(std::uint32_t) const {}
 };
@@ -52,6 +57,7 @@ public:
 
 private:
     void uploadSamples(const SampleGrid& grid, const VertexSource& source);
+    void write(const DrawList& list, const VertexSource& source, std::size_t vertex);
     void writeNew(const DrawList& list, const VertexSource& source);
     void uploadPool(const DrawList& list, const VertexSource& source, bool everything);
 

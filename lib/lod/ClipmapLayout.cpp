@@ -24,7 +24,8 @@ ClipmapLayout::ClipmapLayout(int columns, int rows, const ClipmapShape& shape)
     while ((reach << (covering - 1)) < longest) ++covering;
     // Levels of samples count from the finest sample on: those finer come on top.
     levels_ = levels_ > 0 ? std::min(levels_ + detailLevels_, covering) : covering;
-    const int widest = (size_ - 1) / 2 - 2;
+    // No wider than leaves the finer level's perimeter where this level is its own.
+    const int widest = blockSize() - 3;
     transition_ = std::clamp(transition_ > 0 ? transition_ : size_ / 10, 1, widest);
 }
 
@@ -69,6 +70,9 @@ public:
     void columns(glm::ivec2 low, glm::ivec2 high) { tile(Footprint::Column, low, high, {2, strip_}); }
     void rows(glm::ivec2 low, glm::ivec2 high) { tile(Footprint::Row, low, high, {strip_, 2}); }
     void seam(glm::ivec2 low, glm::ivec2 high) {
+        // Where the grid ends there is nothing beyond.
+        const int across = low.x == high.x ? 0 : 1;
+        if (low[across] <= domain_.low[across] || low[across] >= domain_.high[across]) return;
         low = glm::max(low, domain_.low), high = glm::min(high, domain_.high);
         if (low != high && glm::all(glm::lessThanEqual(low, high))) patches_[Footprint::Seam].push_back({low, high, level_});
     }
@@ -161,7 +165,9 @@ std::vector<ClipRect> activeRegions(const ClipmapLayout& layout, std::span<const
         const ClipRect wanted = layout.place(level, viewer);
         ClipRect region = valid[l].contains(wanted.cutTo(layout.domain(level))) ? wanted : wanted.cutTo(valid[l]);
         if (level + 1 < layout.levels()) {
-            const ClipRect within = active[l + 1].shrunk(2);
+            // Nor may it reach into where the coarser one blends along a border of what is there.
+            const bool isCropped = active[l + 1] != layout.place(level + 1, viewer);
+            const ClipRect within = active[l + 1].shrunk(isCropped ? 2 + layout.transitionWidth() : 2);
             if (within.isEmpty()) break;
             region = region.cutTo({within.low * 2, within.high * 2});
             region = {(region.low + 1) & ~1, region.high & ~1};

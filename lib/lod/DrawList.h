@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 namespace terrain {
@@ -24,7 +25,8 @@ struct SelectionReport {
 /// Triangles over a pool of vertices. The spans belong to the algorithm and are valid until its next selection.
 struct DrawList {
     std::span<const glm::vec3> positions;        ///< local coordinates by vertex; free places hold stale values
-    std::span<const std::uint32_t> samples;      ///< row * columns + column by vertex
+    std::span<const std::uint32_t> samples;      ///< row * columns + column by vertex, of the nearest where there are `places`
+    std::span<const glm::vec2> places;           ///< column and row by vertex; empty when all vertices are samples
     std::span<const std::uint32_t> indices;      ///< three a triangle, counter-clockwise in the grid's (column, row) plane
     std::span<const std::uint32_t> newVertices;  ///< vertices that stand for another sample than at the last selection
     bool wholeGrid = false;                      ///< vertex i is sample i: positions, samples and newVertices are empty

@@ -15,6 +15,7 @@
 
 class SbVec3f;
 class SoPath;
+struct TerrainFrame;
 struct TerrainGrid;
 
 namespace terrain {
@@ -66,6 +67,9 @@ protected:
     virtual bool needsErrors() const;
     /// Detail finer than the samples that the node adds to this data, or null: then picking, heights and the bounding box include it.
     virtual const terrain::SynthesisedDetail * detailOf(const TerrainGrid & data);
+    /// Draws with GL programs of the node's own, and fills in the statistics that it has. FALSE where the view is to be drawn from
+    /// createAlgorithm()'s mesh instead, as all nodes do by default.
+    virtual SbBool renderOwn(const TerrainFrame & frame, SoTerrainStatistics & statistics);
     /// To be called when meshes would now be created otherwise: every view gets a new algorithm when it is next drawn.
     void discardMeshes();
     /// The power of two from `least` to `most` nearest to what a field asks for, after a warning where that is another number.

@@ -1,0 +1,50 @@
+// One view of a geometry clipmap that is drawn by vertex textures.
+#ifndef SOTERRAIN_CLIPMAPVIEW_H
+#define SOTERRAIN_CLIPMAPVIEW_H
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <SoTerrain/SoTerrainStatistics.h>
+
+#include "TerrainFrame.h"
+#include "gl/ClipmapRenderer.h"
+#include "lod/Clipmap.h"
+
+/// How the fields of an SoGeometryClipmapTerrain ask for a view to be drawn.
+struct ClipmapOptions {
+    terrain::ClipmapShape shape;
+    terrain::ClipmapSettings settings;
+    bool memoryFree = false;
+    bool blendNormals = true;
+    bool showLevels = false;
+    bool freeze = false;
+};
+
+class ClipmapView : public ViewDrawing {
+public:
+    ClipmapView(const TerrainFrame & frame, const terrain::ClipmapShape & shape, bool memoryFree);
+
+    const terrain::ClipmapShape & shape() const { return shape_; }
+    bool isFor(const terrain::ClipmapShape & shape, bool memoryFree) const { return shape == shape_ && memoryFree == memoryFree_; }
+    /// Draws, and fills in the statistics and the view's report. Returns what is wrong with GL, or nothing.
+    std::optional<terrain::Error> render(const TerrainFrame & frame, const ClipmapOptions & options, const terrain::ClipmapErrors * errors,
+                                         const terrain::SynthesisedDetail * detail, SoTerrainStatistics & statistics);
+
+    std::vector<terrain::GlName> release() override;
+    std::size_t memoryBytes() const override { return clipmap_.bytes(); }
+    std::size_t bufferBytes() const override { return renderer_.bufferBytes(); }
+
+private:
+    terrain::ClipmapShape shape_;
+    bool memoryFree_;
+    terrain::Clipmap clipmap_;
+    terrain::ClipmapRenderer renderer_;
+    std::optional<terrain::Clipmap::Frame> frozen_;
+};
+
+/// Why the state can't be drawn by vertex textures; empty where it can. `isAffine`: StateAttributes::hasAffineTextureCoordinates().
+std::string whyNotOnGpu(const TerrainFrame & frame, const terrain::ClipmapLayout & layout, bool isAffine);
+
+#endif
