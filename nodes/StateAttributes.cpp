@@ -177,6 +177,21 @@ void StateAttributes::prefetch(std::uint32_t sample) const
             __builtin_prefetch(&textureCoordinates_->getArrayPtr2(unit)[sample]);
 }
 
+void StateAttributes::writeColour(int column, int row, std::uint8_t * out) const
+{
+    const int index = materialIndex(column, row);
+    const int transparencies = lazy_->getNumTransparencies();
+    std::uint32_t rgba;
+    if (lazy_->isPacked()) {
+        rgba = lazy_->getPackedPointer()[index];
+    } else {
+        const float transparency = transparencies > 0 ? lazy_->getTransparencyPointer()[std::min(index, transparencies - 1)] : 0.0f;
+        rgba = lazy_->getDiffusePointer()[index].getPackedValue(transparency);
+    }
+    const std::uint8_t bytes[4] = {std::uint8_t(rgba >> 24), std::uint8_t(rgba >> 16), std::uint8_t(rgba >> 8), std::uint8_t(rgba)};
+    std::memcpy(out, bytes, sizeof bytes);
+}
+
 void StateAttributes::write(std::uint32_t sample, std::uint8_t * out) const
 {
     const int column = int(sample % std::uint32_t(grid_.columns())), row = int(sample / std::uint32_t(grid_.columns()));
@@ -186,22 +201,46 @@ void StateAttributes::write(std::uint32_t sample, std::uint8_t * out) const
         out += 3 * sizeof(float);
     }
     if (format_.colours) {
-        const int index = materialIndex(column, row);
-        const int transparencies = lazy_->getNumTransparencies();
-        std::uint32_t rgba;
-        if (lazy_->isPacked()) {
-            rgba = lazy_->getPackedPointer()[index];
-        } else {
-            const float transparency = transparencies > 0 ? lazy_->getTransparencyPointer()[std::min(index, transparencies - 1)] : 0.0f;
-            rgba = lazy_->getDiffusePointer()[index].getPackedValue(transparency);
-        }
-        const std::uint8_t bytes[4] = {std::uint8_t(rgba >> 24), std::uint8_t(rgba >> 16), std::uint8_t(rgba >> 8), std::uint8_t(rgba)};
-        std::memcpy(out, bytes, sizeof bytes);
-        out += sizeof bytes;
+        writeColour(column, row, out);
+        out += 4;
     }
     for (const int unit : format_.textureUnits) {
         const SbVec2f coordinate = textureCoordinate(unit, column, row);
         std::memcpy(out, coordinate.getValue(), 2 * sizeof(float));
+        out += 2 * sizeof(float);
+    }
+}
+
+void StateAttributes::writeAt(glm::vec2 place, std::uint32_t nearest, std::uint8_t * out) const
+{
+    const int column = std::clamp(int(place.x), 0, grid_.columns() - 2), row = std::clamp(int(place.y), 0, grid_.rows() - 2);
+    const float u = place.x - float(column), v = place.y - float(row);
+    const bool upper = u + v > 1.0f;
+    struct Corner {
+        int column, row;
+        float weight;
+    };
+    const Corner corners[3] = {upper ? Corner{column + 1, row + 1, u + v - 1.0f} : Corner{column, row, 1.0f - u - v},
+                               {column + 1, row, upper ? 1.0f - v : u}, {column, row + 1, upper ? 1.0f - u : v}};
+    if (format_.normals) {
+        SbVec3f sum(0.0f, 0.0f, 0.0f);
+        const bool smooth = normalBinding_ == PER_VERTEX || normalBinding_ == GENERATED;
+        // Corners without weight may be holes.
+        for (const Corner & corner : corners)
+            if (corner.weight > 0.0f) sum += normal(smooth ? corner.column : column, smooth ? corner.row : row) * corner.weight;
+        sum.normalize();
+        std::memcpy(out, sum.getValue(), 3 * sizeof(float));
+        out += 3 * sizeof(float);
+    }
+    if (format_.colours) {
+        writeColour(int(nearest % std::uint32_t(grid_.columns())), int(nearest / std::uint32_t(grid_.columns())), out);
+        out += 4;
+    }
+    for (const int unit : format_.textureUnits) {
+        SbVec2f sum(0.0f, 0.0f);
+        for (const Corner & corner : corners)
+            if (corner.weight > 0.0f) sum += textureCoordinate(unit, corner.column, corner.row) * corner.weight;
+        std::memcpy(out, sum.getValue(), 2 * sizeof(float));
         out += 2 * sizeof(float);
     }
 }

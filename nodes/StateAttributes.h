@@ -28,6 +28,8 @@ public:
     const terrain::VertexFormat & format() const override { return format_; }
     std::uint64_t version() const override { return version_; }
     void write(std::uint32_t sample, std::uint8_t * out) const override;
+    /// What the samples' triangle shows there: normals and texture coordinates in between, the colour of the nearest sample.
+    void writeAt(glm::vec2 place, std::uint32_t nearest, std::uint8_t * out) const override;
     void prefetch(std::uint32_t sample) const override;
 
     /// What the state has too few of, and what is done about it.
@@ -53,6 +55,7 @@ private:
     bool isEnough(const char * what, Binding binding, long found, const char * remedy);
     int boundIndex(Binding binding, int column, int row, int count) const;
     SbVec3f generatedNormal(int column, int row) const;
+    void writeColour(int column, int row, std::uint8_t * out) const;
     void mix(std::uint64_t value) { version_ = (version_ ^ value) * 0x100000001b3ull; }
 
     const terrain::SampleGrid & grid_;

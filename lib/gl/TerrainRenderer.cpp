@@ -67,8 +67,7 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
     if (size > mirror_.capacity()) mirror_.reserve(size + size / 8);
     mirror_.resize(size);
     if (everything)
-        for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex)
-            write(list, source, vertex);
+        for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex) write(list, source, vertex);
     else
         writeNew(list, source);
     attributes_.refill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size());

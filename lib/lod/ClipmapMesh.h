@@ -23,13 +23,14 @@
 
 namespace terrain {
 
-/// One view of a clipmap (Losasso and Hoppe: "Geometry clipmaps", 2004) on the CPU: the same levels, patches, heights and transitions
-/// as in textures, for curved grids too.
+/// One view of a clipmap (Losasso and Hoppe: "Geometry clipmaps", 2004) on the CPU: the same levels, patches, heights and
+/// transitions as in textures, for curved grids too.
 ///
 /// Each level's own and coarser heights (of curved grids: positions) stay in arrays that wrap around, and are read only where the
 /// clipmap says that something is new. The pool of vertices holds those of the levels' squares of kChunk x kChunk vertices that
 /// patches in view use: such a square keeps its place for as long as it is in use, and is computed anew only where it blends or
-/// has new vertices. A vertex stands at its own place or on the way to the coarser surface's, by Clipmap::blend(): exactly there at 1.
+/// has new vertices. A vertex stands at its own place or on the way to the coarser surface's, by Clipmap::blend(): exactly there
+/// at 1.
 ///
 /// Along a level's perimeter every second vertex lies on the coarser level's edge; triangles without area fill what rounding leaves
 /// open between the two. They count in the report. A cell with a hole at a corner is not drawn. `triangleBudget`, `operationLimit`
@@ -42,8 +43,8 @@ public:
     /// `errors` is asked in every selection and may give none as long as there are none; it may be empty. `detail` may be null, and
     /// must be of the grid that is passed to select(); without it the layout's detailLevels() must be 0. Of `settings`, pixelError,
     /// cull and detail are not used.
-    ClipmapMesh(const ClipmapLayout& layout, const ClipmapSettings& settings, std::shared_ptr<const BoxPyramid> boxes, Errors errors,
-                std::shared_ptr<const SynthesisedDetail> detail);
+    ClipmapMesh(const ClipmapLayout& layout, const ClipmapSettings& settings, std::shared_ptr<const BoxPyramid> boxes,
+                Errors errors, std::shared_ptr<const SynthesisedDetail> detail);
 
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
     std::size_t bytes() const override;
