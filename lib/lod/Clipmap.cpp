@@ -82,6 +82,13 @@ Clipmap::Eye Clipmap::eyeOf(const SampleGrid& grid, const BoxPyramid& boxes, con
     return result;
 }
 
+ClipRect Clipmap::plainPart(int level, glm::dvec2 viewer) const {
+    if (level + 1 == layout_.levels()) return layout_.domain(level);
+    const double inner = double(layout_.size() - 1) / 2.0 - layout_.transitionWidth() - 1.0;
+    const glm::dvec2 at = layout_.viewerAt(level, viewer);
+    return ClipRect{glm::ivec2(glm::ceil(at - inner)), glm::ivec2(glm::floor(at + inner))}.cutTo(layout_.domain(level));
+}
+
 int Clipmap::chooseFinest(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors, const ScreenSpace& space,
                           const Eye& eye, glm::dvec2 viewer, const ClipmapSettings& settings) const {
     const int last = layout_.levels() - 1, sampled = std::min(layout_.detailLevels(), last);
@@ -91,8 +98,12 @@ int Clipmap::chooseFinest(const SampleGrid& grid, const BoxPyramid& boxes, const
     while (finest < last && double(layout_.size() - 1) * layout_.spacing(finest) < 2.5 * eye.height) ++finest;
     if (!errors) return finest;
     const auto errorWithout = [&](int level) {
-        const ClipRect region = coarserRect(layout_.place(level - 1, viewer)).cutTo(layout_.domain(level));
-        return errors->screenError(space, grid, boxes, layout_.sourceLevel(level), false, region, {}, settings.pixelError);
+        // In the blocks that boundError() would see, so that it finds no more than this.
+        constexpr int kBlock = ClipmapErrors::kBlockCells;
+        ClipRect region = coarserRect(layout_.place(level - 1, viewer));
+        region = {region.low & ~(kBlock - 1), (region.high + (kBlock - 1)) & ~(kBlock - 1)};
+        return errors->screenError(space, grid, boxes, layout_.sourceLevel(level), false, region.cutTo(plainPart(level, viewer)),
+                                   {}, settings.pixelError);
     };
     while (finest > sampled && errorWithout(finest) > settings.pixelError) --finest;
     if (finest < sampled) return finest;
@@ -133,13 +144,11 @@ float Clipmap::boundError(const SampleGrid& grid, const BoxPyramid& boxes, const
             largest = std::max(largest, errors.screenError(space, grid, boxes, source, false, region.cutTo(domain), hole, largest));
             continue;
         }
-        const double inner = double(layout_.size() - 1) / 2.0 - layout_.transitionWidth() - 1.0;
-        const glm::dvec2 at = layout_.viewerAt(level, viewer);
         ClipRect plain;
-        if (region == whole) plain = {glm::ivec2(glm::ceil(at - inner)), glm::ivec2(glm::floor(at + inner))};
+        if (region == whole) plain = plainPart(level, viewer);
         if (!plain.isEmpty())
-            largest = std::max(largest, errors.screenError(space, grid, boxes, source, false, plain.cutTo(domain), hole, largest));
-        const ClipRect& without = plain.contains(hole) && !plain.isEmpty() ? plain : hole;
+            largest = std::max(largest, errors.screenError(space, grid, boxes, source, false, plain, hole, largest));
+        const ClipRect& without = plain.contains(hole.cutTo(domain)) && !plain.isEmpty() ? plain : hole;
         largest = std::max(largest, errors.screenError(space, grid, boxes, source, true, region.cutTo(domain), without, largest));
     }
     return largest;

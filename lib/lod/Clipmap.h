@@ -69,6 +69,8 @@ private:
             0.0;  ///< distance to the ground there, in the smaller distance of samples; infinite for an orthographic camera
     };
     Eye eyeOf(const SampleGrid& grid, const BoxPyramid& boxes, const View& view) const;
+    /// Where a level that is all there is drawn at its own heights.
+    ClipRect plainPart(int level, glm::dvec2 viewer) const;
     int chooseFinest(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors, const ScreenSpace& space,
                      const Eye& eye, glm::dvec2 viewer, const ClipmapSettings& settings) const;
     float boundError(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors& errors, const ScreenSpace& space,
