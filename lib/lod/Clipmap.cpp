@@ -172,7 +172,7 @@ void Clipmap::cover(const BoxPyramid& boxes, const ScreenSpace& space, const Cli
         if (!settings.detail || layout_.sourceLevel(patch.level) >= 0 || bounds.isEmpty()) return bounds;
         // Detail looks two samples around.
         const BoxPyramid::Bounds around = boxes.bounds(low.x - 2, low.y - 2, high.x + 2, high.y + 2);
-        const float reach = settings.detail->largest(around.high.z - around.low.z);
+        const float reach = settings.detail->overshoot(0, around.high.z - around.low.z, boxes.hasHoles());
         bounds.low.z -= reach;
         bounds.high.z += reach;
         return bounds;
