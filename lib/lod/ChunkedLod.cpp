@@ -35,7 +35,8 @@ Box ChunkedLod::boxOf(const TileId& id) const {
 }
 
 DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
-    const bool atRest = !isFirst_ && report_.converged && view == view_ && settings == settings_;
+    const bool asBefore = !isFirst_ && view == view_ && settings == settings_;
+    const bool atRest = asBefore && report_.converged;
     const SelectionReport last = report_;
     report_ = SelectionReport{};
     newVertices_.clear();
@@ -61,9 +62,7 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
         report_.triangles = std::uint32_t(indices_.size() / 3);
         report_.patches = drawnTiles();
         // Where budgets allow no more, another selection would give the same.
-        const bool isIdle = cache_.isIdle();
-        if (isIdle && wasIdle_ && !indicesChanged && placedBytes_ == 0) report_.converged = true;
-        wasIdle_ = isIdle;
+        if (asBefore && isSettled_ && !indicesChanged && placedBytes_ == 0) report_.converged = true;
     }
     isFirst_ = false;
     DrawList list;
@@ -80,12 +79,9 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
 void ChunkedLod::choose() {
     const ProfileScope scope("chunked: choose tiles");
     std::swap(drawn_, drawnBefore_);
-    // Once more after all is there, because the last tiles may have come while others were chosen.
-    for (bool wasIdle = false;;) {
+    for (;;) {
         chooseOnce();
-        const bool isIdle = cache_.isIdle();
-        if (!settings_.complete || report_.converged || (isIdle && wasIdle)) return;
-        wasIdle = isIdle;
+        if (!settings_.complete || report_.converged || isSettled_) return;
         cache_.wait();
     }
 }
@@ -107,7 +103,10 @@ void ChunkedLod::chooseOnce() {
         draw(root, mesh, boxOf(root), 0.0f);
         report_.converged = false;
     }
+    // What comes only now was not there to be chosen.
+    const std::size_t seen = cache_.arrived();
     cache_.endFrame();
+    isSettled_ = cache_.isIdle() && cache_.arrived() == seen;
 }
 
 bool ChunkedLod::visit(const TileId& id, float parentPixels) {

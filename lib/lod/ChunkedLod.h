@@ -102,7 +102,7 @@ private:
     SelectionReport report_;
     std::size_t credit_ = 0;  ///< bytes that may still come on screen
     bool isFirst_ = true;
-    bool wasIdle_ = false;  ///< nothing was being built after the last selection
+    bool isSettled_ = false;  ///< nothing is being built, and all tiles that are there could be looked at
     std::size_t placedBytes_ = 0;
     std::vector<Tile> drawn_, drawnBefore_;
     std::map<TileId, Slot> slots_;

@@ -119,6 +119,8 @@ public:
     }
     /// Of those, tiles (and failures) that the next endFrame() takes in.
     std::size_t finished() const { return jobs_->counts().finished; }
+    /// Tiles and failures that were taken in since the beginning, whether they could be kept or not.
+    std::size_t arrived() const { return arrived_; }
     /// Tiles built since the beginning.
     std::size_t built() const { return jobs_->counts().built; }
     /// Nothing is queued or in flight: another frame of the same requests would change nothing.
@@ -170,6 +172,7 @@ private:
     bool isWanted(const Finished& finished) const { return wanted_.contains(finished.key); }
 
     void takeIn(std::vector<Finished> finished) {
+        arrived_ += finished.size();
         for (const Finished& f : finished)
             if (!f.tile) failed_.insert(f.key);
         std::erase_if(finished, [](const Finished& f) { return !f.tile; });
@@ -250,6 +253,7 @@ private:
     std::size_t touchedBytes_ = 0;  ///< of tiles touched in this frame
     std::size_t peakBytes_ = 0;
     std::size_t refused_ = 0;
+    std::size_t arrived_ = 0;
 };
 
 }  // namespace terrain

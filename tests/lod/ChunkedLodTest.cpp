@@ -286,6 +286,55 @@ TEST(ChunkedLod, KeepsTheUploadBudgetInEveryFrame)
     EXPECT_EQ(mesh.drawnTiles(), whole.drawnTiles());
 }
 
+namespace {
+
+/// Each job is done before submit() returns: whatever is asked for within a selection is there before it ends.
+class PromptRunner final : public TaskRunner {
+public:
+    void submit(Job job) override
+    {
+        manual.submit(std::move(job));
+        manual.runAll();
+    }
+    unsigned workers() const override { return 1; }
+
+private:
+    ManualRunner manual;
+};
+
+}  // namespace
+
+TEST(ChunkedLod, GoesOnWhenItsBudgetIsRaised)
+{
+    const Slow scene;
+    for (const bool complete : {false, true})
+        for (const bool prompt : {true, false}) {
+            // Where a selection waits for its tiles, somebody has to build them.
+            if (complete && !prompt) continue;
+            const auto manual = std::make_shared<ManualRunner>();
+            const auto runner = prompt ? std::shared_ptr<TaskRunner>(std::make_shared<PromptRunner>()) : manual;
+            ChunkedLod mesh(scene.model, scene.grid, 16, nullptr, runner);
+            LodSettings settings = completeSettings(1.0f);
+            settings.complete = complete;
+            settings.memoryBudget = 0;
+            for (int frame = 0; frame < 5; ++frame) {
+                mesh.select(scene.grid, scene.view(0), settings);
+                manual->runAll();
+            }
+            const SelectionReport coarse = mesh.select(scene.grid, scene.view(0), settings).report;
+            EXPECT_TRUE(coarse.converged) << "it would be redrawn for ever";
+            EXPECT_GT(coarse.errorPixels, 1.0f);
+            settings.memoryBudget = std::size_t(64) << 20;
+            SelectionReport report;
+            for (int frame = 0; !report.converged || frame == 0; ++frame) {
+                ASSERT_LT(frame, 1000) << "never complete";
+                report = mesh.select(scene.grid, scene.view(0), settings).report;
+                manual->runAll();
+            }
+            EXPECT_LE(report.errorPixels, 1.0f) << "complete " << complete << ", prompt " << prompt;
+        }
+}
+
 TEST(ChunkedLod, KeepsTheMemoryBudgetOverRandomJumps)
 {
     const Slow scene;
