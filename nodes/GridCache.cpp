@@ -104,6 +104,9 @@ Result<TerrainGrid> GridCache::findMap(SoState * state, const GridRequest & requ
     Entry & entry = entryFor(key);
     entry.grid = SampleGrid(map, column, row, key.columns, key.rows);
     entry.model.samples = element->getSource()->weak_from_this().lock();
+    // Of a map in scratch space, what the views look at would add up to the whole in the course of a flight.
+    constexpr std::size_t kResidentBytes = std::size_t(96) << 20;
+    map.heights.limitResident(kResidentBytes);
     return complete(entry, withErrors);
 }
 

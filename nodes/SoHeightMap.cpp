@@ -19,6 +19,10 @@
   A relative file name is looked for as textures are: in the directory of the .iv file that names it, and in those of
   SoInput::addDirectoryLast(). Samples that are not finite, or equal to noData or to the file's own no-data value, are holes.
 
+  A map of more than 2^26 samples (8192 x 8192) is decoded into scratch space on disk instead of memory, 4 bytes a sample: an unnamed
+  file in the directory that the environment variable TMPDIR names (/tmp without it), which goes when nobody needs the map any more.
+  Then memory holds only what is looked at. Too little space there is an error as an unreadable file is.
+
   \code
   #Inventor V2.1 ascii
   Separator {

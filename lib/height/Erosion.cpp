@@ -192,7 +192,7 @@ void creep(HeightMap& map, double diffusion) {
     const auto columns = std::size_t(map.columns);
     std::vector<float> before;
     for (int part = 0; part < parts; ++part) {
-        before = map.heights;
+        before.assign(map.heights.begin(), map.heights.end());
         for (int row = 1; row < map.rows - 1; ++row)
             for (int column = 1; column < map.columns - 1; ++column) {
                 const std::size_t i = std::size_t(row) * columns + std::size_t(column);

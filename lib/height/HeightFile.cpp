@@ -35,7 +35,16 @@ Result<HeightMapBuilder> HeightMapBuilder::create(const std::string& path, std::
     HeightMapBuilder builder;
     builder.map_.columns = int(columns);
     builder.map_.rows = int(rows);
-    builder.map_.heights.reserve(std::size_t(columns) * std::size_t(rows));
+    builder.missingRows_ = int(rows);
+    builder.row_.resize(std::size_t(columns));
+    const std::uint64_t count = std::uint64_t(columns) * std::uint64_t(rows);
+    if (count > options.samplesInMemory) {
+        auto scratch = ScratchWriter::create(path, count);
+        if (!scratch) return scratch.error();
+        builder.scratch_ = std::move(scratch).value();
+    } else {
+        builder.map_.heights.reserve(std::size_t(count));
+    }
     builder.heightScale_ = options.heightScale;
     builder.heightOffset_ = options.heightOffset;
     if (options.noData) builder.noData_.push_back(*options.noData);
@@ -56,22 +65,34 @@ bool HeightMapBuilder::isHole(double sample) const {
                        [&](double value) { return sample == value || (floatingPoint_ && float(sample) == float(value)); });
 }
 
-void HeightMapBuilder::appendRow(const double* samples) {
+bool HeightMapBuilder::appendRow(const double* samples) {
     constexpr float hole = std::numeric_limits<float>::quiet_NaN();
     for (int column = 0; column < map_.columns; ++column) {
         const double sample = samples[column];
         const double height = (sample * fileScale_ + fileOffset_) * heightScale_ + heightOffset_;
         const bool valid = std::abs(height) <= double(std::numeric_limits<float>::max()) && !isHole(sample);
-        map_.heights.push_back(valid ? float(height) : hole);
+        row_[std::size_t(column)] = valid ? float(height) : hole;
     }
+    --missingRows_;
+    if (!scratch_)
+        for (const float height : row_) map_.heights.push_back(height);
+    else if (!problem_)
+        problem_ = scratch_->write(std::uint64_t(missingRows_) * row_.size(), row_.data(), row_.size());
+    return !problem_;
 }
 
-HeightMap HeightMapBuilder::finish() && {
-    const std::size_t columns = std::size_t(map_.columns);
+Result<HeightMap> HeightMapBuilder::finish() && {
+    if (problem_) return *problem_;
+    if (scratch_) {
+        auto heights = std::move(*scratch_).finish();
+        if (!heights) return heights.error();
+        map_.heights = std::move(heights).value();
+        return std::move(map_);
+    }
+    float* const heights = map_.heights.data();
+    const std::size_t columns = row_.size();
     for (std::size_t south = 0, north = std::size_t(map_.rows) - 1; south < north; ++south, --north)
-        std::swap_ranges(map_.heights.begin() + std::ptrdiff_t(south * columns),
-                         map_.heights.begin() + std::ptrdiff_t((south + 1) * columns),
-                         map_.heights.begin() + std::ptrdiff_t(north * columns));
+        std::swap_ranges(heights + south * columns, heights + (south + 1) * columns, heights + north * columns);
     return std::move(map_);
 }
 

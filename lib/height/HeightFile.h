@@ -17,15 +17,15 @@ Result<int> chooseChannel(const std::string& path, int channelCount, const Heigh
 /// Collects the rows of a file, from north to south, into a HeightMap.
 ///
 /// Samples come as doubles, which hold every 32-bit integer exactly; a height is rounded once, to float, after the scaling. No-data
-/// values are compared with the raw sample. What is not finite after that is a hole. Memory fills as rows arrive, so that a header
-/// that promises more than the file holds costs nothing.
+/// values are compared with the raw sample. What is not finite after that is a hole. Memory, or scratch space for maps of more than
+/// `options.samplesInMemory`, fills as rows arrive, so that a header that promises more than the file holds costs nothing.
 class HeightMapBuilder {
 public:
-    /// Error: fewer than 2 x 2 samples, or more than fit (`maximumSamples`, or an int per side).
+    /// Error: fewer than 2 x 2 samples, more than fit (`maximumSamples`, or an int per side), or no scratch space for them.
     static Result<HeightMapBuilder> create(const std::string& path, std::int64_t columns, std::int64_t rows,
                                            const HeightFileOptions& options);
 
-    /// Largest map that is held in memory: 2^34 samples, 64 GiB.
+    /// Largest map that is read: 2^34 samples, 64 GiB.
     static constexpr std::uint64_t maximumSamples = std::uint64_t(1) << 34;
 
     /// Scaling and no-data that the file states itself; the options' scaling comes after the file's.
@@ -34,16 +34,20 @@ public:
     /// Samples of a floating-point file equal a no-data value when they do so as floats: -9999.9 has no exact double.
     void setFloatingPoint(bool floatingPoint) { floatingPoint_ = floatingPoint; }
 
-    /// `samples`: as many as there are columns.
-    void appendRow(const double* samples);
-    /// The map, rows turned so that the first one is the southernmost. Every row must have been appended.
-    HeightMap finish() &&;
+    /// `samples`: as many as there are columns. False when there is no space for them: finish() says why.
+    bool appendRow(const double* samples);
+    /// The map, rows turned so that the first one is the southernmost, once every row has been appended.
+    Result<HeightMap> finish() &&;
 
 private:
     HeightMapBuilder() = default;
     bool isHole(double sample) const;
 
     HeightMap map_;
+    std::optional<ScratchWriter> scratch_;
+    std::optional<Error> problem_;
+    int missingRows_ = 0;
+    std::vector<float> row_;
     double fileScale_ = 1.0;
     double fileOffset_ = 0.0;
     double heightScale_ = 1.0;

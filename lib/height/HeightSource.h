@@ -1,6 +1,7 @@
 // Where heights come from: one interface over memory, images, rasters, raw files and procedures.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,9 +54,9 @@ public:
     virtual int levelCount() const = 0;
     /// Samples of one tile; an Error for a key outside the pyramid or an unreadable file.
     virtual Result<HeightTile> load(const TileKey& key) const = 0;
-    /// The whole of level 0 when it is resident in memory, else null. Lives as long as the source.
+    /// The whole of level 0 when it can be read like memory, else null. Lives as long as the source.
     virtual const HeightMap* map() const { return nullptr; }
-    /// Bytes of memory that the source holds.
+    /// Bytes of memory that the source holds, without what it has in scratch space.
     virtual std::size_t bytes() const = 0;
 };
 
@@ -72,14 +73,17 @@ struct HeightFileOptions {
     double heightScale = 1.0;           ///< height = sample * heightScale + heightOffset
     double heightOffset = 0.0;
     std::optional<double> noData;  ///< sample value (before scaling) that marks a hole, beside the file's own and NaN
+    /// A map of more samples than these (256 MiB) is decoded into scratch space on disk, 4 bytes each: an unnamed file in the
+    /// directory for temporary files (TMPDIR), of which only what is looked at takes memory.
+    std::uint64_t samplesInMemory = std::uint64_t(1) << 26;
 };
 
 /// Opens any file this build can read: ".raw" by rawSize and rawType, GDAL's georeferenced rasters, images by OpenImageIO.
 /// Errors: missing or unreadable file, truncated data, channel out of range, three channels and none chosen, fewer than 2 x 2
-/// samples.
+/// samples, no scratch space for a large map.
 Result<std::shared_ptr<const HeightSource>> openHeightFile(const std::string& path, const HeightFileOptions& options);
 
-/// The source over a map in memory (takes the map). Error: fewer than 2 x 2 samples, or sizes that do not match the samples.
+/// The source over a map (takes the map). Error: fewer than 2 x 2 samples, or sizes that do not match the samples.
 Result<std::shared_ptr<const HeightSource>> makeMapSource(HeightMap map);
 
 }  // namespace terrain

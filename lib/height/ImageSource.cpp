@@ -10,7 +10,6 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -88,10 +87,17 @@ bool toDoubles(OIIO::TypeDesc type, const void* from, std::vector<double>& to) {
 /// Compressed data hold no FF byte without a following 0, so the last end marker has to stand behind the last start of a scan.
 bool jpegEnds(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    const std::size_t end = bytes.rfind("\xFF\xD9");
-    const std::size_t scan = bytes.rfind("\xFF\xDA");
-    return end != std::string::npos && (scan == std::string::npos || end > scan);
+    std::vector<char> bytes(std::size_t(1) << 16);
+    bool ended = false, marker = false;
+    do {
+        file.read(bytes.data(), std::streamsize(bytes.size()));
+        for (const char* byte = bytes.data(); byte != bytes.data() + file.gcount(); ++byte) {
+            if (marker && *byte == '\xD9') ended = true;
+            if (marker && *byte == '\xDA') ended = false;
+            marker = *byte == '\xFF';
+        }
+    } while (file);
+    return ended;
 }
 
 /// Whether a PNG file goes on to its last chunk. Its decoder would report a missing end too, but on the error output and leaking
@@ -137,7 +143,7 @@ Result<HeightMap> decode(const std::string& path, OIIO::ImageInput& input, const
         for (int i = 0; i < count; ++i) {
             if (!toDoubles(type, bytes.data() + std::size_t(i) * rowBytes, samples))
                 return Error{path, "numbers as samples", std::string("type ") + type.c_str()};
-            builder.value().appendRow(samples.data());
+            if (!builder.value().appendRow(samples.data())) return std::move(builder).value().finish();
         }
     }
     return std::move(builder).value().finish();

@@ -1,4 +1,4 @@
-// The height source over a map in memory.
+// The height source over a map.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -46,9 +46,7 @@ public:
     Result<HeightTile> load(const TileKey& key) const override;
     const HeightMap* map() const override { return &map_; }
 
-    std::size_t bytes() const override {
-        return sizeof *this + map_.heights.capacity() * sizeof(float) + map_.projection.capacity();
-    }
+    std::size_t bytes() const override { return sizeof *this + map_.heights.memoryBytes() + map_.projection.capacity(); }
 
 private:
     void measure(HeightTile& tile, const Span& columns, const Span& rows) const;
@@ -87,12 +85,17 @@ void MapSource::measure(HeightTile& tile, const Span& columns, const Span& rows)
     // Comparisons with NaN are false, so holes drop out by themselves.
     float minimum = std::numeric_limits<float>::infinity();
     float maximum = -minimum;
-    for (std::int64_t row = rows.first; row <= rows.last; ++row)
+    // So much of a map in scratch space is resident at a time.
+    constexpr int kBand = 64;
+    const std::int64_t rowCount = rows.last - rows.first + 1;
+    for (std::int64_t row = rows.first; row <= rows.last; ++row) {
         for (std::int64_t column = columns.first; column <= columns.last; ++column) {
             const float height = map_.at(int(column), int(row));
             if (height < minimum) minimum = height;
             if (height > maximum) maximum = height;
         }
+        if (rowCount > kBand && (row - rows.first) % kBand == kBand - 1) map_.releaseRows(int(row) - kBand + 1, kBand);
+    }
     const bool empty = minimum > maximum;
     tile.minimum = empty ? std::numeric_limits<float>::quiet_NaN() : minimum;
     tile.maximum = empty ? std::numeric_limits<float>::quiet_NaN() : maximum;

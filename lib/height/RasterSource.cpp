@@ -97,17 +97,27 @@ void describeSamples(GDALRasterBand& band, HeightMapBuilder& builder) {
     builder.setFileScale(hasScale ? scale : 1.0, hasOffset ? offset : 0.0);
 }
 
-/// Rows go to the builder from north to south and from west to east, whichever way the file has them.
-bool readBand(GDALRasterBand& band, const Placement& place, HeightMapBuilder& builder) {
+/// Rows go to the builder from north to south and from west to east, whichever way the file has them. False when the file does not
+/// give one.
+bool readBand(GDALDataset& dataset, GDALRasterBand& band, const Placement& place, HeightMapBuilder& builder) {
     const int columns = band.GetXSize();
     const int rows = band.GetYSize();
+    constexpr int leastFlushed = 16;
+    int blockColumns = 0, blockRows = 1, flushed = 0;
+    band.GetBlockSize(&blockColumns, &blockRows);
     std::vector<double> samples(static_cast<std::size_t>(columns));
     for (int i = 0; i < rows; ++i) {
         const int row = place.dy < 0.0 ? i : rows - 1 - i;
         if (band.RasterIO(GF_Read, 0, row, columns, 1, samples.data(), columns, 1, GDT_Float64, 0, 0, nullptr) != CE_None)
             return false;
         if (place.dx < 0.0) std::reverse(samples.begin(), samples.end());
-        builder.appendRow(samples.data());
+        if (!builder.appendRow(samples.data())) break;
+        // GDAL keeps blocks up to a share of the machine's memory; no row of blocks is needed twice.
+        const int next = place.dy < 0.0 ? row + 1 : row - 1;
+        if (next / blockRows != row / blockRows && i - flushed >= leastFlushed) {
+            dataset.FlushCache(false);
+            flushed = i;
+        }
     }
     return true;
 }
@@ -169,9 +179,9 @@ Result<HeightMap> readRaster(const std::string& path, const HeightFileOptions& o
     auto builder = HeightMapBuilder::create(path, band.GetXSize(), band.GetYSize(), options);
     if (!builder) return builder.error();
     describeSamples(band, builder.value());
-    if (!readBand(band, place.value(), builder.value())) return Error{path, "a complete raster", messages.reason()};
-    HeightMap map = std::move(builder).value().finish();
-    georeference(map, place.value(), *dataset);
+    if (!readBand(*dataset, band, place.value(), builder.value())) return Error{path, "a complete raster", messages.reason()};
+    auto map = std::move(builder).value().finish();
+    if (map) georeference(map.value(), place.value(), *dataset);
     return map;
 }
 

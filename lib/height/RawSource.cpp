@@ -80,7 +80,7 @@ Result<HeightMap> readRaw(const std::string& path, const HeightFileOptions& opti
         if (!file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
             return Error{path, std::to_string(length) + " bytes", "an end of data in row " + std::to_string(row)};
         decodeRow(bytes, options.rawType, samples);
-        builder.value().appendRow(samples.data());
+        if (!builder.value().appendRow(samples.data())) break;
     }
     return std::move(builder).value().finish();
 }

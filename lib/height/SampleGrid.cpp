@@ -19,7 +19,7 @@ SampleGrid::SampleGrid(const HeightMap& map) : SampleGrid(map, 0, 0, map.columns
 SampleGrid::SampleGrid(const HeightMap& map, int column, int row, int columns, int rows)
     : columns_(columns), rows_(rows),
       heights_(map.heights.data() + std::size_t(row) * std::size_t(map.columns) + std::size_t(column)),
-      pitch_(std::size_t(map.columns)) {
+      pitch_(std::size_t(map.columns)), storage_(map.heights.isMapped() ? &map.heights : nullptr) {
     localFromFrame_[0] = glm::dvec4(map.spacing.x, 0.0, 0.0, 0.0);
     localFromFrame_[1] = glm::dvec4(0.0, map.spacing.y, 0.0, 0.0);
     localFromFrame_[3] = glm::dvec4(map.origin + map.spacing * glm::dvec2(column, row), 0.0, 1.0);

@@ -10,6 +10,7 @@
 
 #include "base/Result.h"
 #include "height/HeightMap.h"
+#include "height/ResidentRows.h"
 
 namespace terrain {
 
@@ -59,6 +60,14 @@ public:
         __builtin_prefetch(heights_ ? heights_ + sample * stride_ : points_ + index(column, row) * 3);
     }
 
+    /// Who goes over all rows in order calls this with those that are done: over a map in scratch space, their pages need not stay
+    /// resident.
+    void releaseRows(int firstRow, int count) const {
+        if (storage_) storage_->releasePages(std::size_t(heightRow(firstRow) - storage_->data()), std::size_t(count) * pitch_);
+    }
+    /// For who goes over them in another order.
+    ResidentRows residentRows() const { return {storage_, pitch_}; }
+
     const glm::dmat4& localFromFrame() const { return localFromFrame_; }
     /// Local axis (0, 1, 2) that heights of a regular grid run along.
     int heightAxis() const { return heightAxis_; }
@@ -68,10 +77,11 @@ private:
 
     int columns_ = 0;
     int rows_ = 0;
-    const float* heights_ = nullptr;  ///< regular grids only
-    std::size_t stride_ = 1;          ///< floats from one height to the next
-    std::size_t pitch_ = 0;           ///< heights from one row to the next
-    const float* points_ = nullptr;   ///< null over a map
+    const float* heights_ = nullptr;          ///< regular grids only
+    std::size_t stride_ = 1;                  ///< floats from one height to the next
+    std::size_t pitch_ = 0;                   ///< heights from one row to the next
+    const float* points_ = nullptr;           ///< null over a map
+    const HeightStorage* storage_ = nullptr;  ///< of a map in scratch space
     int heightAxis_ = 2;
     glm::dmat4 localFromFrame_{1.0};
 };
