@@ -26,6 +26,11 @@ int blocksAcross(int samples, int blockCells) {
 }  // namespace
 
 BoxPyramid::Bounds BoxPyramid::exactBounds(const SampleGrid& grid, int column0, int row0, int column1, int row1) {
+    bool hasHoles = false;
+    return measured(grid, column0, row0, column1, row1, hasHoles);
+}
+
+BoxPyramid::Bounds BoxPyramid::measured(const SampleGrid& grid, int column0, int row0, int column1, int row1, bool& hasHoles) {
     Bounds bounds = kNothing;
     column0 = std::max(column0, 0);
     row0 = std::max(row0, 0);
@@ -37,6 +42,8 @@ BoxPyramid::Bounds BoxPyramid::exactBounds(const SampleGrid& grid, int column0, 
                 if (const float height = grid.height(column, row); std::isfinite(height)) {
                     bounds.low.z = std::min(bounds.low.z, height);
                     bounds.high.z = std::max(bounds.high.z, height);
+                } else {
+                    hasHoles = true;
                 }
         bounds.low.x = float(column0);
         bounds.low.y = float(row0);
@@ -45,11 +52,13 @@ BoxPyramid::Bounds BoxPyramid::exactBounds(const SampleGrid& grid, int column0, 
         return bounds;
     }
     for (int row = row0; row <= row1; ++row)
-        for (int column = column0; column <= column1; ++column)
-            if (!grid.isHole(column, row)) {
-                const glm::vec3 p = grid.framePosition(column, row);
+        for (int column = column0; column <= column1; ++column) {
+            const glm::vec3 p = grid.framePosition(column, row);
+            if (grid.isHole(column, row))
+                hasHoles = true;
+            else
                 include(bounds, {p, p});
-            }
+        }
     return bounds;
 }
 
@@ -63,10 +72,12 @@ BoxPyramid::BoxPyramid(const SampleGrid& grid) : gridColumns_(grid.columns()), g
         for (int axis = regular_ ? 2 : 0; axis < 3; ++axis)
             level.values.insert(level.values.end(), {bounds.low[axis], bounds.high[axis]});
     };
-    for (int row = 0; row < base.rows; ++row)
+    for (int row = 0; row < base.rows; ++row) {
+        const int first = row * kBlockCells;
         for (int column = 0; column < base.columns; ++column)
-            append(base,
-                   exactBounds(grid, column * kBlockCells, row * kBlockCells, (column + 1) * kBlockCells, (row + 1) * kBlockCells));
+            append(base, measured(grid, column * kBlockCells, first, (column + 1) * kBlockCells, first + kBlockCells, hasHoles_));
+        grid.releaseRows(first, kBlockCells);
+    }
     levels_.push_back(std::move(base));
     while (levels_.back().columns > 1 || levels_.back().rows > 1) {
         const Level& fine = levels_.back();
@@ -84,20 +95,22 @@ BoxPyramid::BoxPyramid(const SampleGrid& grid) : gridColumns_(grid.columns()), g
         levels_.push_back(std::move(coarse));
     }
     findAll(grid);
-    for (int row = 0; row < gridRows_ && !hasHoles_; ++row)
-        for (int column = 0; column < gridColumns_ && !hasHoles_; ++column) hasHoles_ = grid.isHole(column, row);
 }
 
 void BoxPyramid::findAll(const SampleGrid& grid) {
     all_ = block(levelCount() - 1, 0, 0);
     if (!regular_ || all_.isEmpty()) return;
     // Border columns and rows without any valid sample do not count.
-    const auto columnIsEmpty = [&grid](int column) {
-        for (int row = 0; row < grid.rows(); ++row)
+    ResidentRows resident = grid.residentRows();
+    const auto columnIsEmpty = [&](int column) {
+        for (int row = 0; row < grid.rows(); ++row) {
+            resident.visit(row);
             if (!grid.isHole(column, row)) return false;
+        }
         return true;
     };
-    const auto rowIsEmpty = [&grid](int row) {
+    const auto rowIsEmpty = [&](int row) {
+        resident.visit(row);
         for (int column = 0; column < grid.columns(); ++column)
             if (!grid.isHole(column, row)) return false;
         return true;

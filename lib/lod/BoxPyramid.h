@@ -49,6 +49,8 @@ private:
         int rows = 0;
         std::vector<float> values;  ///< per block low then high: of z (regular) or of x, y, z (curved)
     };
+    /// Exact bounds; sets `hasHoles` when there is any.
+    static Bounds measured(const SampleGrid& grid, int column0, int row0, int column1, int row1, bool& hasHoles);
     void findAll(const SampleGrid& grid);
     Bounds stored(const Level& level, int column, int row) const;
 

@@ -116,7 +116,9 @@ private:
         columns_ = cells(0, 1);
         states_.assign(std::size_t(columns_) * std::size_t(cells(1, 1)), 0);
         std::vector<std::uint8_t> low(std::size_t(grid_.columns())), high = low;
+        ResidentRows resident = grid_.residentRows();
         for (int row = 0; row <= last_.y; ++row) {
+            resident.visit(row);
             std::swap(low, high);
             for (int column = 0; column <= last_.x; ++column) high[std::size_t(column)] = grid_.isHole(column, row);
             for (std::size_t i = 0; row > 0 && i < std::size_t(last_.x); ++i)
@@ -201,6 +203,7 @@ void ClipmapErrors::scan(const SampleGrid& grid) {
         }
         for (ClipmapScan& scan : scans)
             for (int i = 0; i < count; ++i) scan.addRow(grid, rows[std::size_t(i)]);
+        grid.releaseRows(first, count);
     }
     for (std::size_t i = 0; i < levels_.size(); ++i) {
         levels_[i].plain = scans[i].plain();

@@ -15,29 +15,38 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Heights of a regular grid, packed, so that the innermost loop runs over consecutive floats.
+/// Heights of a regular grid, so that the innermost loop runs over consecutive floats: packed unless they are.
 class PackedHeights {
 public:
     using Value = float;
-    explicit PackedHeights(const SampleGrid& grid)
-        : columns_(grid.columns()), heights_(std::size_t(grid.columns()) * std::size_t(grid.rows())) {
+    explicit PackedHeights(const SampleGrid& grid) : heights_(grid.heightRow(0)), resident_(grid.residentRows()) {
+        if (grid.heightStride() == 1) {
+            pitch_ = std::size_t(grid.heightRow(1) - grid.heightRow(0));
+            return;
+        }
+        pitch_ = std::size_t(grid.columns());
+        packed_.reserve(pitch_ * std::size_t(grid.rows()));
         for (int row = 0; row < grid.rows(); ++row)
-            for (int column = 0; column < columns_; ++column) heights_[grid.index(column, row)] = grid.height(column, row);
+            for (int column = 0; column < grid.columns(); ++column) packed_.push_back(grid.height(column, row));
+        heights_ = packed_.data();
     }
-    float at(glm::ivec2 p) const { return heights_[std::size_t(p.y) * std::size_t(columns_) + std::size_t(p.x)]; }
+    float at(glm::ivec2 p) const { return heights_[std::size_t(p.y) * pitch_ + std::size_t(p.x)]; }
     static float length(float v) { return std::fabs(v); }
     /// Largest distance of samples [first, last] of a row from start + i * step.
     float rowDeviation(int row, int first, int last, float start, float step) const {
-        const float* sample = heights_.data() + std::size_t(row) * std::size_t(columns_) + first;
+        const float* sample = heights_ + std::size_t(row) * pitch_ + first;
         float deviation = 0.0f;
 #pragma omp simd reduction(max : deviation)
         for (int i = 0; i <= last - first; ++i) deviation = std::max(deviation, std::fabs(sample[i] - (start + float(i) * step)));
+        resident_.visit(row);
         return deviation;
     }
 
 private:
-    int columns_;
-    std::vector<float> heights_;
+    const float* heights_;
+    std::size_t pitch_ = 0;
+    std::vector<float> packed_;
+    mutable ResidentRows resident_;  ///< small diamonds go over the rows in order, large ones each over many
 };
 
 class CurvedPoints {
@@ -159,8 +168,11 @@ std::uint16_t finestCode(const SampleGrid& grid, const DiamondShape& d, bool isS
 class Coverage {
 public:
     explicit Coverage(const SampleGrid& grid) : grid_(grid) {
-        for (int row = 0; row < grid.rows() && !hasHoles_; ++row)
+        constexpr int kBand = 64;
+        for (int row = 0; row < grid.rows() && !hasHoles_; ++row) {
             for (int column = 0; column < grid.columns() && !hasHoles_; ++column) hasHoles_ = grid.isHole(column, row);
+            if (row % kBand == kBand - 1) grid.releaseRows(row + 1 - kBand, kBand);
+        }
         if (hasHoles_) states_.assign(std::size_t(grid.columns()) * std::size_t(grid.rows()), 0);
     }
 

@@ -152,7 +152,7 @@ void GeoMipmapErrors::build(const SampleGrid& grid) {
     const std::size_t axes = regular_ ? 1 : 3, pitch = std::size_t(GeoMipmapShape::pitch(layout_.exponent));
     lanes.values.assign(pitch * pitch * axes * kLanes, 0.0f);
     lanes.results.resize((slots_ + 1) * kLanes);
-    for (int row = 0; row < layout_.blockRows; ++row)
+    for (int row = 0; row < layout_.blockRows; ++row) {
         for (int column = 0; column < layout_.blockColumns;) {
             // Blocks of one shape together: those up to the last column.
             const int last = layout_.blockColumns - 1, count = column == last ? 1 : std::min(int(kLanes), last - column);
@@ -170,6 +170,8 @@ void GeoMipmapErrors::build(const SampleGrid& grid) {
             }
             column += count;
         }
+        grid.releaseRows(row * layout_.tileSize, layout_.height(row));
+    }
 }
 
 void GeoMipmapErrors::load(const SampleGrid& grid, glm::ivec2 first, int count, Lanes& lanes) {

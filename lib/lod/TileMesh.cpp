@@ -125,14 +125,17 @@ public:
     HoleMap(const TileSamples& samples, const Lattice& lattice) : side_(lattice.cells + 1) {
         if (!samples.hasHoles()) return;
         sums_.assign(std::size_t(side_) * std::size_t(side_), glm::ivec2(0));
+        ResidentRows resident = samples.residentRows();
         for (int y = 0; y < lattice.cells; ++y)
             for (int x = 0; x < lattice.cells; ++x) {
                 const glm::ivec2 low = lattice.sampleAt({x, y}), high = lattice.sampleAt({x + 1, y + 1});
                 glm::ivec2 count(0);
                 // Whatever lies on the last column or row already belongs to the cell before.
                 if (low.x < high.x && low.y < high.y)
-                    for (int row = low.y; row <= high.y; ++row)
+                    for (int row = low.y; row <= high.y; ++row) {
+                        resident.visit(row);
                         for (int column = low.x; column <= high.x; ++column) ++count[samples.isHole(column, row) ? 1 : 0];
+                    }
                 hasHoles_ |= count[1] > 0;
                 at(x + 1, y + 1) = at(x + 1, y) + at(x, y + 1) - at(x, y) + count;
             }

@@ -17,6 +17,7 @@ TileSamples::TileSamples(const SampleGrid& grid, const BoxPyramid& boxes, std::s
     if (owner_ && grid.heightStride() == 1) {
         heights_ = grid.heightRow(0);
         pitch_ = std::size_t(grid.heightRow(1) - grid.heightRow(0));
+        resident_ = grid.residentRows();
         return;
     }
     pitch_ = std::size_t(columns_);

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "height/ResidentRows.h"
 #include "height/SampleGrid.h"
 #include "lod/BoxPyramid.h"
 
@@ -33,6 +34,8 @@ public:
         const glm::vec3& p = pointRow(row)[column];
         return !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
     }
+    /// For who reads rows of heights: see there.
+    const ResidentRows& residentRows() const { return resident_; }
     /// Bytes of copies.
     std::size_t bytes() const { return copy_.capacity() * sizeof(float) + points_.capacity() * sizeof(glm::vec3); }
 
@@ -44,6 +47,7 @@ private:
     std::shared_ptr<const void> owner_;
     const float* heights_ = nullptr;
     std::size_t pitch_ = 0;
+    ResidentRows resident_;
     std::vector<float> copy_;
     std::vector<glm::vec3> points_;
 };
@@ -52,11 +56,13 @@ private:
 struct HeightSamples {
     using Value = float;
     const TileSamples& samples;
+    mutable ResidentRows resident = samples.residentRows();
     float at(glm::ivec2 p) const { return samples.heightRow(p.y)[p.x]; }
     static float length(float v) { return std::fabs(v); }
     static glm::vec3 toFrame(float v) { return {0.0f, 0.0f, v}; }
     /// Largest distance of samples [first, last] of a row from start + i * step.
     float rowDeviation(int row, int first, int last, float start, float step) const {
+        resident.visit(row);
         const float* sample = samples.heightRow(row) + first;
         float deviation = 0.0f;
 #pragma omp simd reduction(max : deviation)
