@@ -20,7 +20,13 @@ namespace {
 
 // Samples that are all whole numbers came from an integer format.
 bool isWhole(const HeightMap& map) {
-    return std::all_of(map.heights.begin(), map.heights.end(), [](float h) { return std::isnan(h) || h == std::floor(h); });
+    constexpr int band = 64;
+    for (int row = 0; row < map.rows; ++row) {
+        const float* first = &map.heights[std::size_t(row) * std::size_t(map.columns)];
+        if (!std::all_of(first, first + map.columns, [](float h) { return std::isnan(h) || h == std::floor(h); })) return false;
+        if (row % band == band - 1) map.releaseRows(row + 1 - band, band);
+    }
+    return true;
 }
 
 // Scale and offset that bring the source's range to 0..standardHeight.

@@ -9,13 +9,14 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <getopt.h>
 
+#include "EnlargedMap.h"
+#include "HeightFileOutput.h"
 #include "height/Erosion.h"
 #include "height/FractalSource.h"
 
@@ -41,6 +42,8 @@ struct Settings {
     std::string output;
     std::string texture;
     int textureSize = 1024;
+    int enlarge = 1;
+    int tile = 0;
 };
 
 const char usage[] = "Usage: soterrain-generate --output FILE.png [option]...\n"
@@ -50,6 +53,9 @@ const char usage[] = "Usage: soterrain-generate --output FILE.png [option]...\n"
                      "  --texture FILE            colours by height and slope\n"
                      "  --texture-size N          its columns and rows (1024)\n"
                      "  --size N                  columns and rows of the heights (1025)\n"
+                     "  --enlarge K               writes K x K cells for each, with smaller relief in them (1); memory and time are\n"
+                     "                            those of --size: 2049 by 8 makes 16385 x 16385 samples\n"
+                     "  --tile N                  writes tiles of N x N, a multiple of 16, to a format that has them (0: lines)\n"
                      "  --seed N                  another number, another terrain (1)\n"
                      "  --roughness R             displacement from level to level, 0 to 1 (0.5)\n"
                      "  --filter-passes N         runs of the smoothing filter over the fractal (0)\n"
@@ -105,6 +111,8 @@ std::vector<Option> optionsFor(Settings& s) {
         {"seed", [&s](const char* text) { s.fractal.seed = s.droplets.seed = std::uint32_t(wholeOf("seed", text, 4294967295)); }},
         {"talus", [&s](const char* text) { s.thermal.talus = s.rivers.talus = numberOf("talus", text); }},
         whole("texture-size", s.textureSize),
+        whole("enlarge", s.enlarge),
+        whole("tile", s.tile),
         number("roughness", s.fractal.roughness),
         whole("filter-passes", s.fractal.filterPasses),
         number("filter-coefficient", s.fractal.filterCoefficient),
@@ -146,6 +154,8 @@ Settings parse(int argc, char** argv) {
     if (optind < argc) failUsage(std::string("unexpected argument '") + argv[optind] + "'");
     if (settings.output.empty()) failUsage("--output is missing");
     if (settings.textureSize < 1 || settings.textureSize > 32768) failUsage("--texture-size: expected 1 to 32768");
+    if (settings.enlarge < 1 || settings.enlarge > 64) failUsage("--enlarge: expected 1 to 64");
+    if (settings.tile % 16 != 0 || settings.tile > 4096) failUsage("--tile: expected a multiple of 16 up to 4096, or 0");
     return settings;
 }
 
@@ -263,16 +273,11 @@ Result<HeightMap> makeTerrain(const Settings& settings) {
     return map;
 }
 
-/// Heights stretched to 16 bits, rows from north to south.
-std::vector<std::uint16_t> toWords(const HeightMap& map) {
-    const auto [low, high] = std::minmax_element(map.heights.begin(), map.heights.end());
-    const double range = std::max(double(*high) - *low, 1e-30);
-    std::vector<std::uint16_t> words;
-    words.reserve(map.heights.size());
-    for (int row = map.rows - 1; row >= 0; --row)
-        for (int column = 0; column < map.columns; ++column)
-            words.push_back(std::uint16_t((map.at(column, row) - *low) / range * 65535.0 + 0.5));
-    return words;
+app::EnlargedMap enlarged(const HeightMap& map, const Settings& settings) {
+    // What the fractal's next level of displacement would be.
+    const terrain::FractalParameters& fractal = settings.fractal;
+    const double relief = 0.5 * fractal.amplitude * std::pow(fractal.roughness, std::log2(double(map.columns)));
+    return {map, settings.enlarge, relief, fractal.roughness, fractal.seed};
 }
 
 #ifdef HAVE_OPENIMAGEIO
@@ -324,27 +329,26 @@ std::vector<std::uint8_t> paint(const HeightMap& map, const HeightMap& noise, in
 }
 
 /// Nothing when all went well.
-std::string writeImage(const std::string& path, int width, int height, int channels, OIIO::TypeDesc type, const void* pixels) {
+std::string writeTexture(const std::string& path, int size, const std::vector<std::uint8_t>& pixels) {
     const auto output = OIIO::ImageOutput::create(path);
     if (!output) return path + ": " + OIIO::geterror();
-    OIIO::ImageSpec spec(width, height, channels, type);
-    spec.attribute("compression", type == OIIO::TypeDesc::UINT8 ? "jpeg:90" : "zip");
+    OIIO::ImageSpec spec(size, size, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("compression", "jpeg:90");
     spec.attribute("png:compressionLevel", 9);
-    if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
+    if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
         return path + ": " + output->geterror();
     return {};
 }
 
 std::string write(const HeightMap& map, const Settings& settings) {
-    std::string problem = writeImage(settings.output, map.columns, map.rows, 1, OIIO::TypeDesc::UINT16, toWords(map).data());
+    const std::string problem = app::writeHeights(enlarged(map, settings), settings.output, settings.tile);
     if (!problem.empty() || settings.texture.empty()) return problem;
     terrain::FractalParameters speckle;
     speckle.seed = settings.fractal.seed + 1;
     speckle.roughness = 0.75;
     const auto noise = makeFractalMap(speckle);
     if (!noise) return noise.error().message();
-    const int size = settings.textureSize;
-    return writeImage(settings.texture, size, size, 3, OIIO::TypeDesc::UINT8, paint(map, noise.value(), size).data());
+    return writeTexture(settings.texture, settings.textureSize, paint(map, noise.value(), settings.textureSize));
 }
 
 #else
@@ -354,11 +358,7 @@ std::string write(const HeightMap& map, const Settings& settings) {
     std::fprintf(stderr,
                  "soterrain-generate: built without OpenImageIO: %s gets 16-bit little-endian samples, and no texture is made\n",
                  path.c_str());
-    std::string bytes;
-    for (const std::uint16_t word : toWords(map)) bytes += {char(word & 255), char(word >> 8)};
-    std::ofstream file(path, std::ios::binary);
-    file << bytes << std::flush;
-    return file ? std::string() : path + ": can't be written";
+    return app::writeHeights(enlarged(map, settings), path, settings.tile);
 }
 
 #endif
