@@ -255,7 +255,7 @@ vec4 terrainTexture(vec2 st)
         }
     }
     if (open >= 0.001) colour += open * textureLod(terrainTextureSmall, p, lod - float(terrainTextureLevels));
-    return colour;
+    return vec4(colour.rgb, 1.0);
 }
 )";
 }

@@ -67,7 +67,7 @@ public:
     Result<Progress> update(const Focus& focus, std::size_t texelBudget);
 
     /// GLSL 1.30, to be put into a fragment shader behind "#version 130" or later: declares the uniforms and
-    /// `vec4 terrainTexture(vec2 st)`, the colour at texture coordinates st, clamped to [0, 1]. The level is that which the
+    /// `vec4 terrainTexture(vec2 st)`, the colour at texture coordinates st, clamped to [0, 1], opaque. The level is that which the
     /// derivatives of st ask for, or the finest there; levels are blended (trilinear), and at the border of what is there of a
     /// level into the next coarser one. To be called in uniform control flow. Names begin with "terrainTexture".
     static const char* glsl();
