@@ -256,7 +256,7 @@ std::unique_ptr<terrain::LodAlgorithm> SoGeometryClipmapTerrain::createAlgorithm
     const auto detail = clipmaps->tables.detail(grid, model, clipmaps->detailShape());
     shape.detailLevels = detail ? detail->levels() : 0;
     const auto errors = clipmaps->tables.errors(grid, model);
-    return std::make_unique<terrain::ClipmapMesh>(terrain::ClipmapLayout(grid.columns(), grid.rows(), shape), clipmaps->settings(), model.boxes,
+    return std::make_unique<terrain::ClipmapMesh>(grid.columns(), grid.rows(), shape, clipmaps->settings(), model.boxes,
                                                   [errors] { return errors->get(); }, detail);
 }
 

@@ -26,14 +26,33 @@ void forRuns(const ClipmapLayout& layout, int first, int last, const Run& run) {
     }
 }
 
+ClipmapShape withSize(ClipmapShape shape, int size) {
+    shape.size = size;
+    return shape;
+}
+
 }  // namespace
 
 ClipmapMesh::ClipmapMesh(const ClipmapLayout& layout, const ClipmapSettings& settings, std::shared_ptr<const BoxPyramid> boxes,
                          Errors errors, std::shared_ptr<const SynthesisedDetail> detail)
     : layout_(layout), options_(settings), boxes_(std::move(boxes)), errors_(std::move(errors)), detail_(std::move(detail)),
-      clipmap_(layout), levels_(std::size_t(layout.levels())) {
+      clipmap_(layout) {
     options_.detail = detail_.get();
+    start(layout);
+}
+
+ClipmapMesh::ClipmapMesh(int columns, int rows, const ClipmapShape& shape, const ClipmapSettings& settings,
+                         std::shared_ptr<const BoxPyramid> boxes, Errors errors, std::shared_ptr<const SynthesisedDetail> detail)
+    : ClipmapMesh(ClipmapLayout(columns, rows, withSize(shape, shape.size == 0 ? ClipmapShape{}.size : shape.size)), settings,
+                  std::move(boxes), std::move(errors), std::move(detail)) {
+    if (shape.size == 0) anySize_ = shape;
+}
+
+void ClipmapMesh::start(const ClipmapLayout& layout) {
+    layout_ = layout;
+    clipmap_ = Clipmap(layout);
     const std::size_t pitch = std::size_t(layout.pitch());
+    levels_.assign(std::size_t(layout.levels()), {});
     for (Level& level : levels_) {
         level.chunks.resize((pitch / kChunk) * (pitch / kChunk));
         for (const int axis : {0, 1}) {
@@ -41,6 +60,14 @@ ClipmapMesh::ClipmapMesh(const ClipmapLayout& layout, const ClipmapSettings& set
             level.place[axis].resize(pitch);
         }
     }
+    free_ = {};
+    placeCount_ = 0;
+    drawn_.clear();
+}
+
+void ClipmapMesh::fitSize(const SampleGrid& grid, const View& view) {
+    const int size = smallestClipmap(grid, *boxes_, errorsUsed_.get(), view, *anySize_, options_);
+    if (size != layout_.size()) start(ClipmapLayout(grid.columns(), grid.rows(), withSize(*anySize_, size)));
 }
 
 DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
@@ -56,6 +83,7 @@ DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const Lod
         findAxes(grid);
         options_.pixelError = settings.pixelError;
         options_.cull = settings.cull;
+        if (anySize_) fitSize(grid, view);
         const Clipmap::Frame& frame = clipmap_.select(grid, *boxes_, errors.get(), view, options_);
         for (const ClipmapUpdates::Update& update : frame.updates) store(grid, update);
         useChunks(frame.patches);

@@ -45,6 +45,10 @@ public:
     /// cull and detail are not used.
     ClipmapMesh(const ClipmapLayout& layout, const ClipmapSettings& settings, std::shared_ptr<const BoxPyramid> boxes,
                 Errors errors, std::shared_ptr<const SynthesisedDetail> detail);
+    /// The same of a grid of columns x rows samples. A size of 0 is smallestClipmap() of each view; when that is another one, all
+    /// begins anew.
+    ClipmapMesh(int columns, int rows, const ClipmapShape& shape, const ClipmapSettings& settings,
+                std::shared_ptr<const BoxPyramid> boxes, Errors errors, std::shared_ptr<const SynthesisedDetail> detail);
 
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
     std::size_t bytes() const override;
@@ -71,6 +75,8 @@ private:
         bool sharesChanged = false;
     };
 
+    void start(const ClipmapLayout& layout);
+    void fitSize(const SampleGrid& grid, const View& view);
     void findAxes(const SampleGrid& grid);
     void store(const SampleGrid& grid, const ClipmapUpdates::Update& update);
     void fillDetail(const SampleGrid& grid, int level, const ClipRect& rect);
@@ -100,6 +106,7 @@ private:
         return place * kChunkVertices + std::uint32_t(vertex.y % kChunk) * kChunk + std::uint32_t(vertex.x % kChunk);
     }
 
+    std::optional<ClipmapShape> anySize_;  ///< where each view has a size of its own
     ClipmapLayout layout_;
     ClipmapSettings options_;
     std::shared_ptr<const BoxPyramid> boxes_;

@@ -563,6 +563,35 @@ TEST(ClipmapMesh, SlidesFromLevelToLevelWithoutAJump) {
     }
 }
 
+TEST(ClipmapMesh, OfNoGivenSizeTakesTheOneThatEachViewNeeds) {
+    const Terrain terrain = fractal(300, 300);
+    const SampleGrid grid = terrain.grid();
+    const auto boxes = std::make_shared<BoxPyramid>(grid);
+    const auto errors = std::make_shared<const ClipmapErrors>(grid, ClipmapLayout(300, 300, {15, 0, 0, 0}).levels());
+    ClipmapMesh any(300, 300, {0, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
+    std::set<int> sizes;
+    std::vector<std::uint32_t> samples;
+    for (int i = 0; i < 12; ++i) {
+        LodSettings settings;
+        settings.pixelError = float(std::pow(2.0, (5 * i) % 9));
+        const View view = flightView(terrain.box(), i, 12);
+        const DrawList list = any.select(grid, view, settings);
+        const int size = any.clipmap().layout().size();
+        EXPECT_TRUE(list.report.errorPixels <= settings.pixelError || size == ClipmapShape::kLargest);
+        sizes.insert(size);
+        ClipmapMesh fixed(300, 300, {size, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
+        const DrawList same = fixed.select(grid, view, settings);
+        ASSERT_EQ(list.indices.size(), same.indices.size());
+        samples.resize(list.samples.size(), kNoVertex);
+        for (const std::uint32_t vertex : list.newVertices) samples[vertex] = list.samples[vertex];
+        for (std::size_t k = 0; k < list.indices.size(); ++k) {
+            ASSERT_TRUE(sameBits(list.positions[list.indices[k]], same.positions[same.indices[k]]));
+            ASSERT_EQ(samples[list.indices[k]], same.samples[same.indices[k]]);
+        }
+    }
+    EXPECT_GT(sizes.size(), 2u);
+}
+
 TEST(ClipmapMesh, TakesErrorsWhenTheyAreThere) {
     const Terrain terrain = fractal(129, 129);
     const SampleGrid grid = terrain.grid();
