@@ -198,7 +198,7 @@ std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, co
     statistics.drawMilliseconds = millisecondsSince(selected);
     statistics.uploadedBytes = drawn.value().uploadedBytes;
     statistics.drawCalls = std::uint32_t(drawn.value().draws);
-    statistics.triangles = chosen.report.triangles;
+    statistics.triangles = std::uint32_t(drawn.value().triangles);
     statistics.patches = chosen.report.patches;
     frame.view.report = chosen.report;
     return std::nullopt;

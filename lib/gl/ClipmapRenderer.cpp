@@ -172,9 +172,8 @@ void ClipmapRenderer::setUniforms(GlProgram& program, const Clipmap::Frame& fram
     glUniform1i(program["colourTexture"], 0);
 }
 
-/// One level, or all of them for -1. Returns the number of draws.
-std::size_t ClipmapRenderer::drawLevels(int level) {
-    std::size_t draws = 0;
+/// One level, or all of them for -1.
+void ClipmapRenderer::drawLevels(int level, Drawn& drawn) {
     patches_.current().bind(GL_ARRAY_BUFFER);
     for (std::size_t footprint = 0; footprint < kFootprints; ++footprint) {
         const auto& firstPatch = firstPatch_[footprint];
@@ -188,9 +187,9 @@ std::size_t ClipmapRenderer::drawLevels(int level) {
         const Mesh& mesh = meshes_[footprint];
         glDrawElementsInstanced(GL_TRIANGLES, mesh.indices, GL_UNSIGNED_INT,
                                 reinterpret_cast<const void*>(mesh.firstIndex * sizeof(GLuint)), last - first);
-        ++draws;
+        ++drawn.draws;
+        drawn.triangles += std::size_t(mesh.indices / 3) * std::size_t(last - first);
     }
-    return draws;
 }
 
 Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame, const ClipmapTextures::Source& source,
@@ -232,7 +231,7 @@ Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame
         if (drawing.texture) colours.emplace(*drawing.texture, program.name(), TextureClipmap::lastUnits());
         setUniforms(program, frame, drawing);
         glBindVertexArray(vertexArray_);
-        result.draws += drawLevels(level);
+        drawLevels(level, result);
         glBindVertexArray(GLuint(arrayBefore));
         glUseProgram(GLuint(programBefore));
     };

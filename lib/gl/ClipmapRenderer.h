@@ -49,6 +49,7 @@ public:
     struct Drawn {
         std::size_t uploadedBytes = 0;
         std::size_t draws = 0;
+        std::size_t triangles = 0;  ///< with those that the border of a patch or of the grid leaves without area
     };
     /// Brings the textures up to date with the frame and draws it. The state of GL is what it was. Error: what GL lacks.
     Result<Drawn> draw(const Clipmap::Frame& frame, const ClipmapTextures::Source& source, const ClipmapDrawing& drawing);
@@ -65,7 +66,7 @@ private:
     void createMeshes();
     void sendPatches(const Clipmap::Frame& frame);
     void setUniforms(GlProgram& program, const Clipmap::Frame& frame, const ClipmapDrawing& drawing);
-    std::size_t drawLevels(int level);
+    void drawLevels(int level, Drawn& drawn);
 
     ClipmapLayout layout_;
     bool memoryFree_;

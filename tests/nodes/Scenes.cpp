@@ -19,6 +19,7 @@
 #include <SoTerrain/SoBruteForceTerrain.h>
 #include <SoTerrain/SoChunkedLoDTerrain.h>
 #include <SoTerrain/SoGeoMipmapTerrain.h>
+#include <SoTerrain/SoGeometryClipmapTerrain.h>
 #include <SoTerrain/SoROAMTerrain.h>
 
 #include "height/FractalSource.h"
@@ -35,6 +36,7 @@ const char* nameOf(Kind kind) {
     case Kind::Roam: return "ROAM";
     case Kind::GeoMipmap: return "Geo Mip-Mapping";
     case Kind::ChunkedLod: return "Chunked LoD";
+    case Kind::Clipmap: return "geometry clipmap";
     }
     return "";
 }
@@ -44,6 +46,7 @@ std::string identifierOf(Kind kind) {
     case Kind::Roam: return "Roam";
     case Kind::GeoMipmap: return "GeoMipmap";
     case Kind::ChunkedLod: return "ChunkedLod";
+    case Kind::Clipmap: return "Clipmap";
     default: return "BruteForce";
     }
 }
@@ -126,6 +129,12 @@ SoTerrainShape* newNode(Kind kind) {
         // Complete in every picture.
         auto* node = new SoChunkedLoDTerrain;
         node->background = FALSE;
+        return node;
+    }
+    case Kind::Clipmap: {
+        // As large as pixelError needs.
+        auto* node = new SoGeometryClipmapTerrain;
+        node->clipmapSize = 0;
         return node;
     }
     default: return new SoBruteForceTerrain;

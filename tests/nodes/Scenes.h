@@ -19,10 +19,10 @@
 namespace test {
 
 /// What draws a grid: Coin's SoIndexedFaceSet of all its triangles, Coin's SoQuadMesh, or one of our nodes.
-enum class Kind { Reference, QuadMesh, BruteForce, Roam, GeoMipmap, ChunkedLod };
-inline constexpr Kind kOurKinds[] = {Kind::BruteForce, Kind::Roam, Kind::GeoMipmap, Kind::ChunkedLod};
+enum class Kind { Reference, QuadMesh, BruteForce, Roam, GeoMipmap, ChunkedLod, Clipmap };
+inline constexpr Kind kOurKinds[] = {Kind::BruteForce, Kind::Roam, Kind::GeoMipmap, Kind::ChunkedLod, Kind::Clipmap};
 /// Those of ours with level of detail.
-inline constexpr Kind kLodKinds[] = {Kind::Roam, Kind::GeoMipmap, Kind::ChunkedLod};
+inline constexpr Kind kLodKinds[] = {Kind::Roam, Kind::GeoMipmap, Kind::ChunkedLod, Kind::Clipmap};
 const char* nameOf(Kind kind);
 /// The same for names of tests and pictures.
 std::string identifierOf(Kind kind);
