@@ -1,4 +1,5 @@
 // A grid seen from straight above, so that each pixel says which cells were drawn.
+#include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -6,10 +7,12 @@
 #include <epoxy/gl.h>
 
 #include <glm/ext/matrix_clip_space.hpp>
+#include <glm/geometric.hpp>
 
 #include "gl/HeadlessContext.h"
 #include "gl/TerrainRenderer.h"
 #include "lod/BruteForceMesh.h"
+#include "lod/ClipmapMesh.h"
 #include "lod/RoamMesh.h"
 
 #include "../lod/Maps.h"
@@ -131,6 +134,31 @@ TEST_F(TerrainRendererDraws, TheSameFromAPoolOfVertices)
     EXPECT_GT(renderer.upload(mesh.select(grid, view, settings), grid, source), 0u);
     expectCells(picture(), 0);
     EXPECT_EQ(renderer.upload(mesh.select(grid, view, settings), grid, source), 0u) << "nothing has changed";
+    expectCells(picture(), 0);
+}
+
+TEST_F(TerrainRendererDraws, WhatVerticesBetweenSamplesCarry)
+{
+    /// Green grows with the place; `write` would be wrong.
+    class Between : public ColouredSamples {
+    public:
+        Between() : ColouredSamples(false) {}
+        void write(std::uint32_t, std::uint8_t* out) const override { std::memset(out, 0, 4); }
+        void writeAt(glm::vec2 place, std::uint32_t nearest, std::uint8_t* out) const override
+        {
+            EXPECT_LE(glm::length(place - glm::vec2(nearest % kSide, nearest / kSide)), 0.75f);
+            const std::uint8_t colour[4] = {200, std::uint8_t(std::lround(place.x * 8.0f)), 0, 255};
+            std::memcpy(out, colour, sizeof colour);
+        }
+    };
+    ClipmapSettings options;
+    options.activeLevels = 100;
+    const auto detail = std::make_shared<SynthesisedDetail>(grid, DetailShape{2, 0.0f, 1});
+    ClipmapMesh mesh(kSide, kSide, {63, 0, 2, 0}, options, terrain.model().boxes, {}, detail);
+    const Between source;
+    const DrawList list = mesh.select(grid, view, {});
+    EXPECT_GT(list.report.triangles, 4u * 2 * (16 * 16 - 4));
+    renderer.upload(list, grid, source);
     expectCells(picture(), 0);
 }
 
