@@ -94,8 +94,7 @@ DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const Lod
             share(grid, level, frame);
             if (writePositions(grid, level)) list.positionsChanged = true;
         }
-        const bool cellsChanged = boxes_->hasHoles() && !frame.updates.empty();
-        if (turned || placesChanged_ || cellsChanged || !std::equal(std::begin(drawn_.by), std::end(drawn_.by), frame.patches.by)) {
+        if (turned || placesChanged_ || !std::equal(std::begin(drawn_.by), std::end(drawn_.by), frame.patches.by)) {
             emit(frame.patches);
             drawn_ = frame.patches;
             list.indicesChanged = true;

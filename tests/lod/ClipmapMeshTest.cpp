@@ -49,11 +49,10 @@ bool sameBits(const glm::vec3& a, const glm::vec3& b) {
 
 /// A mesh with all that it needs.
 struct Scene {
-    Scene(const Terrain& terrain, const ClipmapShape& wanted, ClipmapSettings options = {}) : Scene(terrain.grid(), wanted, options) {}
-    Scene(const SampleGrid& samples, const ClipmapShape& wanted, ClipmapSettings options)
-        : grid(samples), boxes(std::make_shared<BoxPyramid>(grid)), layout(grid.columns(), grid.rows(), wanted),
+    Scene(const Terrain& terrain, const ClipmapShape& wanted, ClipmapSettings options = {}, float amplitude = 0.0f)
+        : grid(terrain.grid()), boxes(std::make_shared<BoxPyramid>(grid)), layout(grid.columns(), grid.rows(), wanted),
           errors(std::make_shared<ClipmapErrors>(grid, layout.levels() - layout.detailLevels())),
-          detail(std::make_shared<SynthesisedDetail>(grid, DetailShape{layout.detailLevels(), 0.0f, 7})),
+          detail(std::make_shared<SynthesisedDetail>(grid, DetailShape{layout.detailLevels(), amplitude, 7})),
           mesh(layout, options, boxes, [this] { return errors; }, detail) {}
     Scene(const Scene&) = delete;
 
@@ -502,24 +501,90 @@ TEST(ClipmapMesh, DrawsEveryVertexWhereTheSelectionSays) {
     }
 }
 
+TEST(ClipmapMesh, GivesWhatAFreshMeshWouldGiveAfterJumpsInOneFrame) {
+    const Terrain terrain = fractal(300, 300);
+    ClipmapSettings options;
+    options.activeLevels = 100;
+    options.updateBudget = 1000000;
+    Scene travelled(terrain, {63, 0, 0, 0}, options);
+    std::mt19937 random(9);
+    for (int i = 0; i < 12; ++i) {
+        Scene fresh(terrain, {63, 0, 0, 0}, options);
+        const View view = lookingDown(fresh.grid, terrain.box(), {uniform(random, 0.0, 300.0), uniform(random, 0.0, 300.0)}, 1.0);
+        LodSettings settings;
+        settings.cull = false;
+        const DrawList a = travelled.mesh.select(travelled.grid, view, settings), b = fresh.mesh.select(fresh.grid, view, settings);
+        ASSERT_TRUE(a.report.converged);
+        ASSERT_EQ(a.indices.size(), b.indices.size());
+        for (std::size_t k = 0; k < a.indices.size(); ++k)
+            ASSERT_TRUE(sameBits(a.positions[a.indices[k]], b.positions[b.indices[k]])) << "jump " << i;
+    }
+}
+
 TEST(ClipmapMesh, DrawsSynthesisedHeightsAroundTheViewer) {
-    const Terrain terrain = fractal(40, 33);
+    const Terrain terrain = fractal(80, 70);
     ClipmapSettings options;
     options.activeLevels = 100;
     Scene scene(terrain, {31, 0, 2, 0}, options);
-    LodSettings settings;
-    const DrawList list = scene.mesh.select(scene.grid, lookingDown(scene.grid, terrain.box(), {20.0, 16.0}, 0.5), settings);
-    const ClipRect& active = scene.mesh.clipmap().frame().active.front();
-    ASSERT_FALSE(active.isEmpty());
-    int checked = 0;
-    for (const std::uint32_t v : list.indices) {
+    const DrawList list = scene.mesh.select(scene.grid, lookingDown(scene.grid, terrain.box(), {40.0, 36.0}, 0.5), {});
+    // The surfaces of the samples and of each level of detail by itself.
+    std::vector<SynthesisedDetail> surfaces;
+    for (int levels = 0; levels < 3; ++levels) surfaces.emplace_back(scene.grid, DetailShape{levels, scene.detail->amplitude(), 7});
+    const auto& active = scene.mesh.clipmap().frame().active;
+    int own = 0, between = 0;
+    for (const std::uint32_t v : std::set<std::uint32_t>(list.indices.begin(), list.indices.end())) {
         const glm::dvec2 place(list.places[v]);
-        const glm::ivec2 vertex(glm::round(place * 4.0));
-        if (!active.contains(vertex) || scene.mesh.clipmap().blend(0, vertex) > 0.0f) continue;
-        EXPECT_EQ(list.positions[v].z, scene.detail->height(scene.grid, place.x, place.y));
-        ++checked;
+        const glm::ivec2 unit(glm::round(place * 4.0));
+        const int level = active[0].contains(unit) ? 0 : 1;
+        // Where two levels meet both have a vertex.
+        if (!active[std::size_t(level)].shrunk(1).contains(unit >> level) || (level == 1 && coarserRect(active[0]).shrunk(-1).contains(unit >> 1)))
+            continue;
+        const float share = scene.mesh.clipmap().blend(level, unit >> level);
+        const double fine = surfaces[std::size_t(2 - level)].height(scene.grid, place.x, place.y);
+        const double coarse = surfaces[std::size_t(1 - level)].height(scene.grid, place.x, place.y);
+        if (share == 0.0f) {
+            EXPECT_EQ(list.positions[v].z, fine);
+        } else {
+            EXPECT_NEAR(list.positions[v].z, fine + (coarse - fine) * double(share), 1e-4);
+        }
+        ++(share > 0.0f && share < 1.0f && std::fabs(fine - coarse) > 1e-3 ? between : own);
     }
-    EXPECT_GT(checked, 200);
+    EXPECT_GT(own, 300);
+    EXPECT_GT(between, 100);
+}
+
+/// Looks along the ground and a little up, so that only what stands out of it is in view.
+void expectAllThatStandsOut(const Terrain& terrain, const ClipmapShape& shape, float amplitude, double height) {
+    ClipmapSettings options;
+    options.activeLevels = 100;
+    Scene whole(terrain, shape, options, amplitude), culled(terrain, shape, options, amplitude);
+    std::mt19937 random(3);
+    std::uint32_t left = 0;
+    for (int i = 0; i < 60; ++i) {
+        const glm::dvec3 middle(terrain.box().centre), half(terrain.box().half);
+        const glm::dvec3 eye = middle + half * glm::dvec3(uniform(random, -0.7, 0.7), uniform(random, -0.7, 0.7), 0.0);
+        const double turn = uniform(random, 0.0, 6.3), pitch = uniform(random, 0.02, 0.15);
+        const glm::dvec3 at(eye.x, eye.y, double(terrain.box().lowest().z) + height);
+        const glm::dmat4 camera = glm::lookAt(at, at + glm::dvec3(std::cos(turn), std::sin(turn), pitch), glm::dvec3(0.0, 0.0, 1.0));
+        const View view{glm::perspective(0.1, 4.0 / 3.0, 0.1, 1000.0) * camera, {1024.0, 768.0}};
+        LodSettings settings;
+        settings.cull = false;
+        const DrawList all = whole.mesh.select(whole.grid, view, settings);
+        settings.cull = true;
+        const DrawList list = culled.mesh.select(culled.grid, view, settings);
+        left += all.report.triangles - list.report.triangles;
+        ASSERT_EQ("", missingProblem(culled, list, whole, all, view)) << "view " << i;
+    }
+    EXPECT_GT(left, 1000u);
+}
+
+TEST(ClipmapMesh, DrawsWhatRisesInATransitionOnly) {
+    Terrain spikes{"Spikes", mapOf(385, 385, [](int column, int row) { return column % 16 == 0 && row % 16 == 0 ? 30.0f : 0.0f; }), {}};
+    expectAllThatStandsOut(spikes, {15, 0, 0, 0}, 0.0f, 1.0);
+}
+
+TEST(ClipmapMesh, DrawsSynthesisedHeightsThatRiseOverAllSamples) {
+    expectAllThatStandsOut(flat(65), {31, 0, 2, 0}, 3.0f, 1.0);
 }
 
 /// Largest way on screen, beyond what the camera does, of the drawn surface at any sample in view from one frame of a slow flight
