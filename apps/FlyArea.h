@@ -54,6 +54,7 @@ private:
     bool steer(const QKeyEvent& event, bool press);
     bool command(const QKeyEvent& event);
     void scalePixelError(float factor);
+    void changeLevels(int by);
     void toggleDetail();
     void toggleRecord();
     void togglePlay();

@@ -12,11 +12,14 @@
 #include <Inventor/Qt/SoQt.h>
 #include <Inventor/fields/SoSFBool.h>
 #include <Inventor/fields/SoSFFloat.h>
+#include <Inventor/fields/SoSFInt32.h>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QScreen>
 #include <QWheelEvent>
 #include <QWidget>
+
+#include <SoTerrain/SoTerrainShape.h>
 
 #include "FlyArea.h"
 
@@ -119,6 +122,15 @@ bool FlyArea::command(const QKeyEvent& event) {
     case Qt::Key_P:
         togglePlay();
         break;
+    case Qt::Key_BracketRight:
+        changeLevels(1);
+        break;
+    case Qt::Key_BracketLeft:
+        changeLevels(-1);
+        break;
+    case Qt::Key_0:
+        changeLevels(0);
+        break;
     case Qt::Key_Escape:
         SoQt::exitMainLoop();
         break;
@@ -144,6 +156,15 @@ void FlyArea::scalePixelError(float factor) {
     const float before = formerError_.value_or(field->getValue());
     formerError_.reset();
     field->setValue(std::clamp(std::max(before, 0.1f) * factor, 0.1f, 100.0f));
+}
+
+/// More or fewer levels of a clipmap than there are now; as many as the view needs for 0.
+void FlyArea::changeLevels(int by) {
+    auto* shape = dynamic_cast<SoTerrainShape*>(scene_.terrain());
+    auto* field = shape ? dynamic_cast<SoSFInt32*>(shape->getField("activeLevels")) : nullptr;
+    if (!field) return;
+    const int now = int(shape->getStatistics().levels);
+    field->setValue(by == 0 ? 0 : std::max(1, now + by));
 }
 
 void FlyArea::toggleDetail() {

@@ -25,6 +25,9 @@ Level of detail
   -e, --pixel-error PX      greatest error on screen, in pixels (2)
   -r, --triangle-count N    most triangles; 0: no limit (roam)
   -g, --tile-size N         cells along the side of a tile (tiled algorithms)
+      --clipmap-size N      vertices along the side of a level: 15, 31, ... 1023, 0: as the pixel error needs (clipmap)
+      --levels N            levels, 0: as many as cover the map (clipmap)
+      --detail N            levels of synthesised detail, finer than the map (clipmap)
   -c, --culling             switch frustum culling on. Without it a height map is drawn without culling; a scene file
                             keeps what it says
 
@@ -54,6 +57,7 @@ Keys
   W S forward, back   A D left, right   Q E up, down   arrows turn   PgUp PgDn roll   mouse drag looks around   wheel: speed
   Keypad + -  pixel error         F  frustum culling      L  wireframe         Space  constant height over the ground
   Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
+  ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
   Left Alt+Enter  full screen     Esc  quit
 
 R writes the flight to soterrain-flight.csv, P the profile of its replay, as -p does, to soterrain-replay.csv.

@@ -19,6 +19,9 @@ namespace {
 // Long options without a short one get a number beyond the characters.
 enum LongOption {
     Scene = 256,
+    ClipmapSize,
+    ClipmapLevels,
+    DetailLevels,
     Offscreen,
     Output,
     Frames,
@@ -49,6 +52,9 @@ const option longOptions[] = {
     {"culling", no_argument, nullptr, 'c'},
     {"animate", no_argument, nullptr, 'v'},
     {"synchronize", no_argument, nullptr, 's'},
+    {"clipmap-size", required_argument, nullptr, ClipmapSize},
+    {"levels", required_argument, nullptr, ClipmapLevels},
+    {"detail", required_argument, nullptr, DetailLevels},
     {"scene", required_argument, nullptr, Scene},
     {"offscreen", optional_argument, nullptr, Offscreen},
     {"output", required_argument, nullptr, Output},
@@ -151,6 +157,9 @@ void Reader::take(int code, const char* value) {
     case 'e':
     case 'r':
     case 'g':
+    case ClipmapSize:
+    case ClipmapLevels:
+    case DetailLevels:
     case Frames:
     case HeightScale:
     case Channel:
@@ -253,6 +262,15 @@ void Reader::takeNumber(int code, const char* value) {
         break;
     case Channel:
         whole(code, value, 0, options.channel);
+        break;
+    case ClipmapSize:
+        whole(code, value, 0, options.clipmapSize);
+        break;
+    case ClipmapLevels:
+        whole(code, value, 0, options.clipmapLevels);
+        break;
+    case DetailLevels:
+        whole(code, value, 0, options.detailLevels);
         break;
     case Frames:
         whole(code, value, 1, options.frames);

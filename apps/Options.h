@@ -26,6 +26,9 @@ struct Options {
     std::optional<double> pixelError;         ///< -e, pixels
     std::optional<int> triangleCount;         ///< -r
     std::optional<int> tileSize;              ///< -g, cells
+    std::optional<int> clipmapSize;           ///< --clipmap-size, vertices along a side; 0: as the pixel error needs
+    std::optional<int> clipmapLevels;         ///< --levels of a clipmap; 0: as many as cover the map
+    std::optional<int> detailLevels;          ///< --detail, levels finer than the samples
     std::optional<int> frames;                ///< --frames
     std::optional<int> measureError;          ///< --measure-error: every so many frames
     std::optional<glm::dvec2> spacing;        ///< --spacing

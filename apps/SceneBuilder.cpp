@@ -108,6 +108,9 @@ void SceneBuilder::setFields() {
     setField<SoSFFloat>("-e", "pixelError", error);
     setField<SoSFInt32>("-r", "triangleCount", options_.triangleCount);
     setField<SoSFInt32>("-g", "tileSize", options_.tileSize);
+    setField<SoSFInt32>("--clipmap-size", "clipmapSize", options_.clipmapSize);
+    setField<SoSFInt32>("--levels", "levels", options_.clipmapLevels);
+    setField<SoSFInt32>("--detail", "detailLevels", options_.detailLevels);
     if (options_.frustumCulling)
         setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(TRUE));
     else if (options_.scene.empty() && scene_.terrain_->getField("frustumCulling")) {

@@ -38,7 +38,8 @@ const char* const usageText =
 struct Arguments {
     app::BenchRequest request;
     std::vector<std::string> nodes{"SoIndexedFaceSet", "SoQuadMesh",          "SoBruteForceTerrain",
-                                   "SoROAMTerrain",    "SoChunkedLoDTerrain", "SoGeoMipmapTerrain"};
+                                   "SoROAMTerrain",    "SoChunkedLoDTerrain", "SoGeoMipmapTerrain",
+                                   "SoGeometryClipmapTerrain"};
     std::string json;
     bool help = false;
     bool child = false;  ///< measure one class and print JSON

@@ -328,6 +328,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
 
     statistics.converged = view.report.converged && texture.converged;
     statistics.uploadedBytes += texture.uploadedBytes;
+    statistics.levels = view.report.levels;
     statistics.errorPixels = view.report.errorPixels;
     statistics.memoryBytes = grids.bytes() + views.memoryBytes() + textures.memoryBytes();
     statistics.bufferBytes = views.bufferBytes() + textures.textureBytes();

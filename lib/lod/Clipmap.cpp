@@ -13,6 +13,9 @@ namespace terrain {
 
 namespace {
 
+/// Part of what lets a level go at which the next coarser one begins to take over.
+constexpr float kFadeStart = 0.8f;
+
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 /// Where the eye of a perspective camera is in the frame; for an orthographic one, where the middle of its view meets the plane of
@@ -89,26 +92,34 @@ ClipRect Clipmap::plainPart(int level, glm::dvec2 viewer) const {
     return ClipRect{glm::ivec2(glm::ceil(at - inner)), glm::ivec2(glm::floor(at + inner))}.cutTo(layout_.domain(level));
 }
 
-int Clipmap::chooseFinest(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors, const ScreenSpace& space,
-                          const Eye& eye, glm::dvec2 viewer, const ClipmapSettings& settings) const {
+Clipmap::Choice Clipmap::choose(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors,
+                                const ScreenSpace& space, const Eye& eye, glm::dvec2 viewer,
+                                const ClipmapSettings& settings) const {
     const int last = layout_.levels() - 1, sampled = std::min(layout_.detailLevels(), last);
-    if (settings.activeLevels > 0) return std::max(0, layout_.levels() - settings.activeLevels);
-    // Asirvatham and Hoppe 2005, sect. 3: levels that are less than 2.5 h wide are not drawn.
+    if (settings.activeLevels > 0) return {std::max(0, layout_.levels() - settings.activeLevels), 0.0f};
+    // Asirvatham and Hoppe 2005, sect. 3: levels that are less than 2.5 h wide are not drawn. Before that they fade.
+    const auto narrowness = [&](int level) { return 2.5 * eye.height / (double(layout_.size() - 1) * layout_.spacing(level)); };
     int finest = 0;
-    while (finest < last && double(layout_.size() - 1) * layout_.spacing(finest) < 2.5 * eye.height) ++finest;
-    if (!errors) return finest;
+    while (finest < last && narrowness(finest) > 1.0) ++finest;
+    if (!errors || finest < sampled) {
+        const double fade = (narrowness(finest) - kFadeStart) / (1.0 - kFadeStart);
+        return {finest, finest < last ? float(std::clamp(fade, 0.0, 1.0)) : 0.0f};
+    }
+    const float enough = kFadeStart * settings.pixelError;
     const auto errorWithout = [&](int level) {
         // In the blocks that boundError() would see, so that it finds no more than this.
         constexpr int kBlock = ClipmapErrors::kBlockCells;
         ClipRect region = coarserRect(layout_.place(level - 1, viewer));
         region = {region.low & ~(kBlock - 1), (region.high + (kBlock - 1)) & ~(kBlock - 1)};
         return errors->screenError(space, grid, boxes, layout_.sourceLevel(level), false, region.cutTo(plainPart(level, viewer)),
-                                   {}, settings.pixelError);
+                                   {}, enough);
     };
-    while (finest > sampled && errorWithout(finest) > settings.pixelError) --finest;
-    if (finest < sampled) return finest;
-    while (finest < last && errorWithout(finest + 1) <= settings.pixelError) ++finest;
-    return finest;
+    while (finest > sampled && errorWithout(finest) > enough) --finest;
+    float error = kInfinite;
+    while (finest < last && (error = errorWithout(finest + 1)) <= enough) ++finest;
+    if (finest == last || !(error < settings.pixelError)) return {finest, 0.0f};
+    // What the next level would do still keeps pixelError: it is on its way to take over.
+    return {finest, (settings.pixelError - error) / (settings.pixelError - enough)};
 }
 
 float Clipmap::blend(int level, int axis, int vertex) const {
@@ -116,7 +127,8 @@ float Clipmap::blend(int level, int axis, int vertex) const {
     // Where the viewer is nothing blends.
     glm::ivec2 at(glm::floor(layout_.viewerAt(level, frame_.viewer)));
     at[axis] = vertex;
-    const float share = layout_.blend(level, at, frame_.viewer);
+    const float least = level == frame_.finest ? frame_.leastBlend : 0.0f;
+    const float share = std::max(least, layout_.blend(level, at, frame_.viewer));
     if (active == layout_.place(level, frame_.viewer) || level + 1 >= layout_.levels()) return share;
     // Along the border of what is there as along a perimeter: the 2004 article's eq. (1). Where the grid ends nothing lies beyond.
     const ClipRect domain = layout_.domain(level);
@@ -127,7 +139,7 @@ float Clipmap::blend(int level, int axis, int vertex) const {
 }
 
 float Clipmap::boundError(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors& errors, const ScreenSpace& space,
-                          glm::dvec2 viewer, std::span<const ClipRect> active) const {
+                          glm::dvec2 viewer, std::span<const ClipRect> active, const Choice& choice) const {
     float largest = 0.0f;
     const int last = layout_.levels() - 1;
     for (int level = last; level >= 0; --level) {
@@ -146,8 +158,22 @@ float Clipmap::boundError(const SampleGrid& grid, const BoxPyramid& boxes, const
         }
         ClipRect plain;
         if (region == whole) plain = plainPart(level, viewer);
-        if (!plain.isEmpty())
+        if (!plain.isEmpty() && level == choice.finest && choice.leastBlend > 0.0f) {
+            // All of it is the same share of two surfaces, but where the border cuts cells of the coarser one.
+            const auto errorOn = [&](int l, bool blends, const ClipRect& part) {
+                return errors.screenError(space, grid, boxes, layout_.sourceLevel(l), blends, part, {}, 0.0f);
+            };
+            const float own = errorOn(level, false, plain),
+                        other = errorOn(level + 1, false, {plain.low >> 1, (plain.high + 1) >> 1});
+            largest = std::max(largest, own + choice.leastBlend * (other - own));
+            for (int axis = 0; axis < 2; ++axis) {
+                ClipRect cut = plain;
+                cut.low[axis] = std::max(plain.low[axis], domain.high[axis] - 2);
+                if (plain.high[axis] == domain.high[axis]) largest = std::max(largest, errorOn(level, true, cut));
+            }
+        } else if (!plain.isEmpty()) {
             largest = std::max(largest, errors.screenError(space, grid, boxes, source, false, plain, hole, largest));
+        }
         const ClipRect& without = plain.contains(hole.cutTo(domain)) && !plain.isEmpty() ? plain : hole;
         largest = std::max(largest, errors.screenError(space, grid, boxes, source, true, region.cutTo(domain), without, largest));
     }
@@ -202,7 +228,9 @@ const Clipmap::Frame& Clipmap::select(const SampleGrid& grid, const BoxPyramid& 
     const ScreenSpace space(view, grid.localFromFrame(), grid.isRegular() ? ErrorDirection::Vertical : ErrorDirection::Any);
     const Eye eye = eyeOf(grid, boxes, view);
     frame_.viewer = layout_.viewerUnits(eye.sample);
-    frame_.finest = chooseFinest(grid, boxes, errors, space, eye, frame_.viewer, settings);
+    const Choice choice = choose(grid, boxes, errors, space, eye, frame_.viewer, settings);
+    frame_.finest = choice.finest;
+    frame_.leastBlend = choice.leastBlend;
     const std::int64_t all = std::int64_t(layout_.size()) * layout_.size();
     const std::int64_t budget = first_ ? 0 : settings.updateBudget > 0 ? settings.updateBudget : all;
     first_ = false;
@@ -210,8 +238,9 @@ const Clipmap::Frame& Clipmap::select(const SampleGrid& grid, const BoxPyramid& 
     frame_.active = activeRegions(layout_, updates_.valid(), frame_.finest, frame_.viewer);
     frame_.report = {};
     cover(boxes, space, settings);
+    frame_.report.levels = std::uint32_t(layout_.levels() - frame_.finest);
     frame_.report.converged = updates_.isComplete();
-    frame_.report.errorPixels = errors ? boundError(grid, boxes, *errors, space, frame_.viewer, frame_.active) : kInfinite;
+    frame_.report.errorPixels = errors ? boundError(grid, boxes, *errors, space, frame_.viewer, frame_.active, choice) : kInfinite;
     return frame_;
 }
 
@@ -220,10 +249,10 @@ float Clipmap::errorOf(const SampleGrid& grid, const BoxPyramid& boxes, const Cl
     const ScreenSpace space(view, grid.localFromFrame(), grid.isRegular() ? ErrorDirection::Vertical : ErrorDirection::Any);
     const Eye eye = eyeOf(grid, boxes, view);
     const glm::dvec2 viewer = layout_.viewerUnits(eye.sample);
-    const int finest = chooseFinest(grid, boxes, &errors, space, eye, viewer, settings);
+    const Choice choice = choose(grid, boxes, &errors, space, eye, viewer, settings);
     std::vector<ClipRect> valid;
     for (int level = 0; level < layout_.levels(); ++level) valid.push_back(layout_.domain(level));
-    return boundError(grid, boxes, errors, space, viewer, activeRegions(layout_, valid, finest, viewer));
+    return boundError(grid, boxes, errors, space, viewer, activeRegions(layout_, valid, choice.finest, viewer), choice);
 }
 
 void Clipmap::forget() {

@@ -71,10 +71,15 @@ private:
     Eye eyeOf(const SampleGrid& grid, const BoxPyramid& boxes, const View& view) const;
     /// Where a level that is all there is drawn at its own heights.
     ClipRect plainPart(int level, glm::dvec2 viewer) const;
-    int chooseFinest(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors, const ScreenSpace& space,
-                     const Eye& eye, glm::dvec2 viewer, const ClipmapSettings& settings) const;
+    /// The finest level that is drawn, and how far it has gone over to the next one.
+    struct Choice {
+        int finest = 0;
+        float leastBlend = 0.0f;
+    };
+    Choice choose(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors, const ScreenSpace& space,
+                  const Eye& eye, glm::dvec2 viewer, const ClipmapSettings& settings) const;
     float boundError(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors& errors, const ScreenSpace& space,
-                     glm::dvec2 viewer, std::span<const ClipRect> active) const;
+                     glm::dvec2 viewer, std::span<const ClipRect> active, const Choice& choice) const;
     void cover(const BoxPyramid& boxes, const ScreenSpace& space, const ClipmapSettings& settings);
 
     ClipmapLayout layout_;

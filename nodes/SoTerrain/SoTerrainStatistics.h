@@ -10,6 +10,7 @@ struct SoTerrainStatistics {
     uint64_t frame = 0;         ///< frames drawn by this node so far, over all views
     uint32_t triangles = 0;     ///< triangles sent to GL
     uint32_t patches = 0;       ///< parts drawn at one level each: tiles, blocks; else 1
+    uint32_t levels = 1;        ///< levels of a clipmap from the coarsest to the finest that is drawn
     uint32_t drawCalls = 0;     ///< of GL
     uint32_t splits = 0;        ///< refinements of the mesh in this frame
     uint32_t merges = 0;        ///< coarsenings of the mesh in this frame

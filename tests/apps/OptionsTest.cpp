@@ -65,6 +65,17 @@ TEST(Options, LongAndShortNamesAgree)
     EXPECT_EQ(result.value().triangleCount, 5);
 }
 
+TEST(Options, ClipmapsHaveTheirOwn)
+{
+    const auto result = parse({"-h", "m.png", "-a", "clipmap", "--clipmap-size", "127", "--levels", "4", "--detail=2"});
+    ASSERT_TRUE(result) << result.error().message();
+    EXPECT_EQ(result.value().clipmapSize, 127);
+    EXPECT_EQ(result.value().clipmapLevels, 4);
+    EXPECT_EQ(result.value().detailLevels, 2);
+    EXPECT_FALSE(parse({"-h", "m.png"}).value().clipmapSize);
+    for (const char* bad : {"--clipmap-size=-1", "--levels=x", "--detail=1.5"}) EXPECT_NE(refusal({"-h", "m", bad}), "") << bad;
+}
+
 TEST(Options, OffscreenTakesASizeOrItsDefault)
 {
     EXPECT_EQ(parse({"-h", "m", "--offscreen"}).value().offscreen, glm::ivec2(1024, 768));

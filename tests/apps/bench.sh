@@ -10,7 +10,7 @@ expect 2 "$BENCH" --unknown
 expect 0 "$BENCH" --help
 expect 0 "$BENCH" --map "$SCRATCH/map.raw" --frames 4 --error-every 2 --json "$SCRATCH/b.json"
 grep -q 'offscreen rendering' "$SCRATCH/err" && skip "no EGL with desktop OpenGL"
-for node in SoIndexedFaceSet SoQuadMesh SoBruteForceTerrain SoROAMTerrain SoChunkedLoDTerrain SoGeoMipmapTerrain; do
+for node in SoIndexedFaceSet SoQuadMesh SoBruteForceTerrain SoROAMTerrain SoChunkedLoDTerrain SoGeoMipmapTerrain SoGeometryClipmapTerrain; do
     grep -q "^$node .*[0-9]" "$SCRATCH/out" || fail "no row for $node"
     grep -q "\"class\": \"$node\"" "$SCRATCH/b.json" || fail "no JSON for $node"
 done

@@ -100,6 +100,32 @@ title | grep -q 'of 2.00 px' || fail "Enter does not go back: $(title)"
 xdotool key Escape
 wait $program || fail "exit status $? of roam"
 
+# Fewer and more levels of a clipmap.
+"$TEST" -h "$SCRATCH/map.raw" -a clipmap --clipmap-size 15 -e 0 >/dev/null 2>"$SCRATCH/err" &
+program=$!
+for _ in $(seq 100); do
+    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: clipmap .*px' 2>/dev/null | tail -1)
+    [ -n "$window" ] && break
+    sleep 0.1
+done
+xdotool windowfocus "$window" mousemove 500 400
+triangles() {
+    sleep 0.8
+    title | sed 's/.*fps *\([0-9]*\) triangles.*/\1/'
+}
+all=$(triangles)
+xdotool key bracketleft
+fewer=$(triangles)
+[ "$fewer" -lt "$all" ] || fail "[ leaves $fewer triangles of $all"
+xdotool key bracketright
+[ "$(triangles)" = "$all" ] || fail "] does not bring the level back"
+xdotool key bracketleft key bracketleft
+[ "$(triangles)" -lt "$fewer" ] || fail "a second [ leaves no level out"
+xdotool key 0
+[ "$(triangles)" = "$all" ] || fail "0 does not give back the choice of levels"
+xdotool key Escape
+wait $program || fail "exit status $? of clipmap"
+
 # However long a mesh takes to converge, the title ends with the figures of the last frame, and then nothing is drawn any more.
 LC_ALL=C awk 'BEGIN { srand(1); for (i = 0; i < 129 * 129; ++i) printf "%c", 65 + int(60 * rand()) }' >"$SCRATCH/rough.raw"
 cat >"$SCRATCH/slow.iv" <<'SCENE'
