@@ -243,20 +243,18 @@ void ClipmapMesh::nameVertices(const SampleGrid& grid, std::span<const ClipmapUp
 /// Clipmap::blend() is the larger of two that depend on one axis each.
 void ClipmapMesh::share(const SampleGrid& grid, int number, const Clipmap::Frame& frame) {
     Level& level = levels_[std::size_t(number)];
-    const ClipRect& active = frame.active[std::size_t(number)];
     const ClipRect& valid = clipmap_.valid()[std::size_t(number)];
-    level.sharesChanged = active != level.active || valid != level.valid || frame.viewer != level.viewer;
-    if (!level.sharesChanged) return;
-    level.active = active;
-    level.valid = valid;
-    level.viewer = frame.viewer;
-    const ClipRect drawn = active.cutTo(layout_.domain(number));
+    const ClipRect drawn = frame.active[std::size_t(number)].cutTo(layout_.domain(number));
     const glm::dmat4& local = grid.localFromFrame();
     const int axes[2] = {columnAxis_, rowAxis_};
+    level.sharesChanged = valid != level.valid;
+    level.valid = valid;
     for (const int axis : {0, 1}) {
-        std::fill(level.share[axis].begin(), level.share[axis].end(), 0.0f);
+        shares_.assign(std::size_t(layout_.pitch()), 0.0f);
         for (int v = drawn.low[axis]; v <= drawn.high[axis]; ++v)
-            level.share[axis][std::size_t(layout_.texel(v))] = clipmap_.blend(number, axis, v);
+            shares_[std::size_t(layout_.texel(v))] = clipmap_.blend(number, axis, v);
+        if (shares_ != level.share[axis]) level.sharesChanged = true;
+        level.share[axis].swap(shares_);
         for (int v = valid.low[axis]; v <= valid.high[axis]; ++v) {
             const int unit = layout_.unitAt(glm::ivec2(v), number)[axis];
             level.place[axis][std::size_t(layout_.texel(v))] =
@@ -393,7 +391,7 @@ void ClipmapMesh::emitSeam(const ClipmapPatch& patch) {
 std::size_t ClipmapMesh::bytes() const {
     const auto held = [](const auto& items) { return items.capacity() * sizeof(items[0]); };
     std::size_t total = clipmap_.bytes() + held(positions_) + held(samples_) + held(places_) + held(newVertices_) + held(indices_) +
-                        held(scratch_) + held(points_) + free_.size() * sizeof(std::uint32_t);
+                        held(scratch_) + held(shares_) + held(points_) + free_.size() * sizeof(std::uint32_t);
     for (const Level& level : levels_)
         total += held(level.heights) + held(level.points) + held(level.chunks) + 2 * (held(level.share[0]) + held(level.place[0]));
     return total;

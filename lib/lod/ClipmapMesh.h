@@ -70,9 +70,8 @@ private:
         std::vector<Chunk> chunks;
         std::vector<float> share[2];  ///< of the coarser level, by texel along an axis
         std::vector<float> place[2];  ///< local coordinate likewise, of regular grids
-        ClipRect active, valid;       ///< what these are of
-        glm::dvec2 viewer{-1.0};
-        bool sharesChanged = false;
+        ClipRect valid;               ///< what `place` is of
+        bool sharesChanged = false;   ///< or places
     };
 
     void start(const ClipmapLayout& layout);
@@ -127,7 +126,7 @@ private:
     std::vector<glm::vec3> positions_;
     std::vector<std::uint32_t> samples_, newVertices_, indices_, rows_[2];
     std::vector<glm::vec2> places_;
-    std::vector<float> scratch_;
+    std::vector<float> scratch_, shares_;
     std::vector<glm::vec3> points_;
     std::size_t indexCount_ = 0;
     SelectionReport report_;

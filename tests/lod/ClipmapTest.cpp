@@ -112,13 +112,14 @@ TEST(Clipmap, DropsLevelsThatPixelErrorDoesNotNeedAndNoneThatItNeeds) {
                 forced.activeLevels = ground.layout.levels() - finest;
                 return ground.fresh(view, forced).report.errorPixels;
             };
-            EXPECT_EQ(errorFrom(chosen.finest), chosen.report.errorPixels);
+            EXPECT_LE(chosen.report.errorPixels, std::max(settings.pixelError, errorFrom(chosen.finest))) << terrain.name << ' ' << i;
             // All levels would do no better, or those that were chosen are good enough.
             if (chosen.report.errorPixels > settings.pixelError) {
                 EXPECT_LE(chosen.report.errorPixels, errorFrom(0)) << terrain.name << ' ' << i;
             }
             if (chosen.finest + 1 < ground.layout.levels()) {
-                EXPECT_GT(errorFrom(chosen.finest + 1), settings.pixelError) << terrain.name << ' ' << i;
+                // A level may be let go somewhat later than it could be, so that it fades.
+                EXPECT_GT(errorFrom(chosen.finest + 1), 0.79f * settings.pixelError) << terrain.name << ' ' << i;
                 ++needed;
             }
             dropped += chosen.finest > 0;
