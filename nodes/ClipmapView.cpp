@@ -226,6 +226,7 @@ std::string whyNotOnGpu(const TerrainFrame & frame, const terrain::ClipmapLayout
         if (SoMultiTextureEnabledElement::getMode(state, 0) != SoMultiTextureEnabledElement::TEXTURE2D) return "the texture is not two-dimensional";
         if (frame.attributes.format().textureUnits.empty()) return "texture coordinates come from a function";
     }
+    if (frame.texture.clipmap && frame.attributes.format().textureUnits.empty()) return "texture coordinates come from a function";
     if (!isAffine) return "texture coordinates are no linear function of columns and rows";
     if (const auto missing = terrain::ClipmapRenderer::whatIsMissing(layout)) return missing->message();
     return std::string();
