@@ -148,14 +148,15 @@ glm::dmat3 eyeFromNormal(const glm::dmat4 & modelView, const glm::dmat4 & localF
 
 }  // namespace
 
-ClipmapView::ClipmapView(const TerrainFrame & frame, const terrain::ClipmapShape & shape, bool memoryFree)
-    : shape_(shape), memoryFree_(memoryFree), clipmap_(terrain::ClipmapLayout(frame.data.grid.columns(), frame.data.grid.rows(), shape)),
+ClipmapView::ClipmapView(const TerrainFrame & frame, const terrain::ClipmapShape & shape, bool memoryFree,
+                         std::shared_ptr<const terrain::SynthesisedDetail> detail)
+    : shape_(shape), memoryFree_(memoryFree), detail_(std::move(detail)), clipmap_(terrain::ClipmapLayout(frame.data.grid.columns(), frame.data.grid.rows(), shape)),
       renderer_(clipmap_.layout(), memoryFree)
 {
 }
 
 std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, const ClipmapOptions & options, const terrain::ClipmapErrors * errors,
-                                                  const terrain::SynthesisedDetail * detail, SoTerrainStatistics & statistics)
+                                                  SoTerrainStatistics & statistics)
 {
     const terrain::SampleGrid & grid = frame.data.grid;
     const Clock::time_point start = Clock::now();
@@ -172,7 +173,7 @@ std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, co
     const Clock::time_point selected = Clock::now();
     const glm::dmat4 & localFromFrame = grid.localFromFrame();
     const auto length = [&](int axis) { return glm::length(glm::dvec3(localFromFrame[axis])); };
-    const terrain::ClipmapTextures::Source source{grid, detail, glm::vec2(length(2) / length(0), length(2) / length(1)), clipmap_.valid()};
+    const terrain::ClipmapTextures::Source source{grid, detail_.get(), glm::vec2(length(2) / length(0), length(2) / length(1)), clipmap_.valid()};
     const glm::dmat4 modelView = matrixOf(GL_MODELVIEW_MATRIX);
     terrain::ClipmapDrawing drawing;
     drawing.shading = shadingOf(frame);

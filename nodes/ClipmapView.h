@@ -24,13 +24,17 @@ struct ClipmapOptions {
 
 class ClipmapView : public ViewDrawing {
 public:
-    ClipmapView(const TerrainFrame & frame, const terrain::ClipmapShape & shape, bool memoryFree);
+    ClipmapView(const TerrainFrame & frame, const terrain::ClipmapShape & shape, bool memoryFree,
+                std::shared_ptr<const terrain::SynthesisedDetail> detail);
 
     const terrain::ClipmapShape & shape() const { return shape_; }
-    bool isFor(const terrain::ClipmapShape & shape, bool memoryFree) const { return shape == shape_ && memoryFree == memoryFree_; }
+    bool isFor(const terrain::ClipmapShape & shape, bool memoryFree, const std::shared_ptr<const terrain::SynthesisedDetail> & detail) const
+    {
+        return shape == shape_ && memoryFree == memoryFree_ && detail == detail_;
+    }
     /// Draws, and fills in the statistics and the view's report. Returns what is wrong with GL, or nothing.
     std::optional<terrain::Error> render(const TerrainFrame & frame, const ClipmapOptions & options, const terrain::ClipmapErrors * errors,
-                                         const terrain::SynthesisedDetail * detail, SoTerrainStatistics & statistics);
+                                         SoTerrainStatistics & statistics);
 
     std::vector<terrain::GlName> release() override;
     std::size_t memoryBytes() const override { return clipmap_.bytes(); }
@@ -39,6 +43,7 @@ public:
 private:
     terrain::ClipmapShape shape_;
     bool memoryFree_;
+    std::shared_ptr<const terrain::SynthesisedDetail> detail_;
     terrain::Clipmap clipmap_;
     terrain::ClipmapRenderer renderer_;
     std::optional<terrain::Clipmap::Frame> frozen_;

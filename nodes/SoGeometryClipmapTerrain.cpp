@@ -227,7 +227,7 @@ SoGeometryClipmapTerrain::~SoGeometryClipmapTerrain() {}
 
 void SoGeometryClipmapTerrain::notify(SoNotList * list)
 {
-    // What is stored of a view depends on these.
+    // Vertex arrays are made for these.
     const SoField * field = list->getLastField();
     for (const SoField * changes : {static_cast<const SoField *>(&this->clipmapSize), static_cast<const SoField *>(&this->levels),
                                     static_cast<const SoField *>(&this->transitionWidth), static_cast<const SoField *>(&this->detailLevels),
@@ -281,7 +281,7 @@ SbBool SoGeometryClipmapTerrain::renderOwn(const TerrainFrame & frame, SoTerrain
     if (options.shape.size == 0)
         options.shape.size = options.freeze && view ? view->shape().size
                                                     : terrain::smallestClipmap(grid, *frame.data.model.boxes, errors.get(), frame.camera, options.shape,
-                                                                               options.settings);
+                                                                               options.settings, view ? view->shape().size : 0);
 
     const std::string reason = whyNotOnGpu(frame, terrain::ClipmapLayout(grid.columns(), grid.rows(), options.shape),
                                            clipmaps->isAffine(frame));
@@ -291,12 +291,12 @@ SbBool SoGeometryClipmapTerrain::renderOwn(const TerrainFrame & frame, SoTerrain
         TerrainViews::discardDrawing(frame.view);
         return FALSE;
     }
-    if (!view || !view->isFor(options.shape, options.memoryFree)) {
+    if (!view || !view->isFor(options.shape, options.memoryFree, detail)) {
         TerrainViews::discardDrawing(frame.view);
-        frame.view.drawing = std::make_unique<ClipmapView>(frame, options.shape, options.memoryFree);
+        frame.view.drawing = std::make_unique<ClipmapView>(frame, options.shape, options.memoryFree, detail);
         view = static_cast<ClipmapView *>(frame.view.drawing.get());
     }
-    if (const auto problem = view->render(frame, options, errors.get(), detail.get(), statistics)) {
+    if (const auto problem = view->render(frame, options, errors.get(), statistics)) {
         warnOnce((problem->message() + "; vertex arrays are used").c_str());
         TerrainViews::discardDrawing(frame.view);
         return FALSE;

@@ -285,13 +285,14 @@ void SoTerrainShape::Private::renderMesh(const TerrainFrame & frame)
     const Clock::time_point start = Clock::now();
     if (frame.attributes.hasOverallNormal()) glNormal3fv(frame.attributes.normal(0, 0).getValue());
     SoState * state = frame.action->getState();
-    const bool cull = !glIsEnabled(GL_CULL_FACE) && hidesUndersides(view, frame.camera, state, frame.data);
-    if (cull) glEnable(GL_CULL_FACE);
+    const bool culls = glIsEnabled(GL_CULL_FACE);
+    const bool cull = !view.report.hasSeams && (culls || hidesUndersides(view, frame.camera, state, frame.data));
+    if (cull != culls) (cull ? glEnable : glDisable)(GL_CULL_FACE);
     {
         const TerrainTextureUse::FixedFunction tiled(frame.texture);
         view.renderer.draw();
     }
-    if (cull) glDisable(GL_CULL_FACE);
+    if (cull != culls) (culls ? glEnable : glDisable)(GL_CULL_FACE);
     if (frame.attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
     statistics.drawMilliseconds = millisecondsSince(start);
     statistics.triangles = view.renderer.triangles();
@@ -310,12 +311,10 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.buildMilliseconds = data->buildMilliseconds;
 
     TerrainView & view = views.find(ViewKey(action), number);
-    if (view.boxes != data->model.boxes || view.meshVersion != meshVersion) {
-        view.boxes = data->model.boxes;
-        view.meshVersion = meshVersion;
-        view.algorithm.reset();
-        TerrainViews::discardDrawing(view);
-    }
+    if (view.boxes != data->model.boxes) TerrainViews::discardDrawing(view);
+    if (view.boxes != data->model.boxes || view.meshVersion != meshVersion) view.algorithm.reset();
+    view.boxes = data->model.boxes;
+    view.meshVersion = meshVersion;
     SoMaterialBundle materials(action);
     materials.sendFirst();
     const StateAttributes attributes(action, data->grid, true);

@@ -185,8 +185,12 @@ void ClipmapRenderer::drawLevels(int level, Drawn& drawn) {
         glVertexAttribIPointer(kLevelAttribute, 1, GL_INT, sizeof(Instance),
                                reinterpret_cast<const void*>(at + offsetof(Instance, level)));
         const Mesh& mesh = meshes_[footprint];
+        // Which way a seam faces is up to rounding.
+        const bool culls = Footprint(footprint) == Footprint::Seam && glIsEnabled(GL_CULL_FACE);
+        if (culls) glDisable(GL_CULL_FACE);
         glDrawElementsInstanced(GL_TRIANGLES, mesh.indices, GL_UNSIGNED_INT,
                                 reinterpret_cast<const void*>(mesh.firstIndex * sizeof(GLuint)), last - first);
+        if (culls) glEnable(GL_CULL_FACE);
         ++drawn.draws;
         drawn.triangles += std::size_t(mesh.indices / 3) * std::size_t(last - first);
     }

@@ -267,16 +267,16 @@ std::size_t Clipmap::bytes() const {
 }
 
 int smallestClipmap(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors, const View& view,
-                    const ClipmapShape& shape, const ClipmapSettings& settings) {
+                    const ClipmapShape& shape, const ClipmapSettings& settings, int now) {
+    if (!errors) return now > 0 ? now : ClipmapShape::kLargest / 4;
+    // Another size is another clipmap, all of which is to be made: a smaller one has to last for a while.
+    constexpr float kLasting = 0.8f;
     ClipmapShape candidate = shape;
     candidate.size = ClipmapShape::kSmallest;
-    if (!errors) {
-        candidate.size = ClipmapShape::kLargest / 4;
-        return candidate.size;
-    }
     while (candidate.size < ClipmapShape::kLargest) {
+        const float wanted = candidate.size < now ? kLasting * settings.pixelError : settings.pixelError;
         const Clipmap clipmap(ClipmapLayout(grid.columns(), grid.rows(), candidate));
-        if (clipmap.errorOf(grid, boxes, *errors, view, settings) <= settings.pixelError) break;
+        if (clipmap.errorOf(grid, boxes, *errors, view, settings) <= wanted) break;
         candidate.size = 2 * candidate.size + 1;
     }
     return candidate.size;

@@ -88,9 +88,9 @@ private:
     bool first_ = true;
 };
 
-/// The smallest size of a clipmap of this shape whose bound on the error keeps pixelError, or the largest. Without errors, kLargest
-/// / 4.
+/// The smallest size of a clipmap of this shape whose bound on the error keeps pixelError, or the largest. Sizes smaller than
+/// `now`, which is in use, are taken where they keep it with room to spare. Without errors it is `now`, or kLargest / 4.
 int smallestClipmap(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors, const View& view,
-                    const ClipmapShape& shape, const ClipmapSettings& settings);
+                    const ClipmapShape& shape, const ClipmapSettings& settings, int now = 0);
 
 }  // namespace terrain

@@ -66,7 +66,7 @@ void ClipmapMesh::start(const ClipmapLayout& layout) {
 }
 
 void ClipmapMesh::fitSize(const SampleGrid& grid, const View& view) {
-    const int size = smallestClipmap(grid, *boxes_, errorsUsed_.get(), view, *anySize_, options_);
+    const int size = smallestClipmap(grid, *boxes_, errorsUsed_.get(), view, *anySize_, options_, view_ ? layout_.size() : 0);
     if (size != layout_.size()) start(ClipmapLayout(grid.columns(), grid.rows(), withSize(*anySize_, size)));
 }
 
@@ -101,6 +101,7 @@ DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const Lod
         }
         report_ = frame.report;
         report_.triangles = std::uint32_t(indexCount_ / 3);
+        report_.hasSeams = true;
     }
     list.positions = positions_;
     list.samples = samples_;

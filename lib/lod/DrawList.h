@@ -19,6 +19,7 @@ struct SelectionReport {
     std::uint32_t merges = 0;
     std::uint32_t patches = 1;  ///< parts that are each drawn at one level: tiles, blocks
     std::uint32_t levels = 1;   ///< of detail that are drawn, of a clipmap
+    bool hasSeams = false;      ///< triangles without area close what rounding leaves open: GL must not leave out any by its facing
     bool converged = true;     ///< false: the limit on operations was met, the next call goes on
     float errorPixels = 0.0f;  ///< bound on the screen error of every sample in view; infinite when it could not be bounded
 };

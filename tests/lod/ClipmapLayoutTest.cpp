@@ -210,5 +210,19 @@ TEST(ClipmapLayout, DrawsInTheFootprintsOfThe2005Article) {
     EXPECT_EQ(within(all[Footprint::Seam], 1), 4);
 }
 
+TEST(ClipmapLayout, HasThirteenMillionTrianglesInEightLevelsOfTheLargestSize) {
+    // Of the 2011 thesis: 13,056,036, where the trim leaves out the cell in its corner, on each of seven levels.
+    ClipmapShape shape;
+    shape.size = 1023;
+    shape.levels = 8;
+    const ClipmapLayout layout(300001, 300001, shape);
+    const ClipmapPatches patches = patchesOf(layout, wholeRegions(layout, 0, glm::dvec2(150000.5, 150001.5)));
+    std::int64_t triangles = 0;
+    for (const Footprint footprint : {Footprint::Block, Footprint::Column, Footprint::Row})
+        for (const ClipmapPatch& patch : patches[footprint])
+            triangles += 2 * std::int64_t(patch.high.x - patch.low.x) * (patch.high.y - patch.low.y);
+    EXPECT_EQ(triangles, 13056036 + 7 * 2);
+}
+
 }  // namespace
 }  // namespace terrain
