@@ -249,7 +249,8 @@ void SoTerrainShape::Private::select(TerrainView & view, const terrain::View & c
     statistics.selectMilliseconds = millisecondsSince(start);
     view.report = list.report;
     const Clock::time_point selected = Clock::now();
-    statistics.uploadedBytes = view.renderer.upload(list, data.grid, attributes);
+    statistics.uploadedBytes = view.renderer.upload(list, data.grid, attributes, settings.uploadBudget > 0 && !settings.complete);
+    statistics.newVertexBytes = view.renderer.newVertexBytes();
     statistics.uploadMilliseconds = millisecondsSince(selected);
     view.hasMesh = true;
     statistics.splits = list.report.splits;

@@ -18,7 +18,9 @@ public:
     /// Replaces the contents, in the storage that is there if it is large enough: asking for new storage in every frame costs more
     /// than filling it.
     void refill(GLenum target, const void* data, std::size_t bytes);
-    /// Overwrites a part.
+    /// Makes room for so many bytes and keeps what is there: GL copies it, nothing is sent. False where GL can't and all is lost.
+    bool grow(GLenum usage, std::size_t bytes);
+    /// Overwrites a part. GL keeps the order: what is drawn before still reads the old.
     void update(GLenum target, std::size_t offset, const void* data, std::size_t bytes);
     void bind(GLenum target) const { glBindBuffer(target, name_); }
     bool exists() const { return name_ != 0; }

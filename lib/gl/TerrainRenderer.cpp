@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/ProfileScope.h"
+#include "gl/VertexRuns.h"
 
 namespace terrain {
 
@@ -36,6 +37,7 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
         if (stride > 0) attributes_.update(GL_ARRAY_BUFFER, first * stride, attributes.data(), size * stride);
     }
     uploaded_ += count * (sizeof(glm::vec3) + stride);
+    newVertexBytes_ = uploaded_;
 }
 
 void TerrainRenderer::write(const DrawList& list, const VertexSource& source, std::size_t vertex) {
@@ -56,12 +58,27 @@ void TerrainRenderer::writeNew(const DrawList& list, const VertexSource& source)
     }
 }
 
-void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& source, bool everything) {
+/// A call takes as long as some ten thousand bytes do, so single vertices all over the pool are sent with what lies between them.
+std::size_t TerrainRenderer::uploadNew(const DrawList& list, bool onlyNew) {
+    constexpr std::size_t kFewRuns = 4;
+    const std::size_t most = onlyNew ? list.newVertices.size() : kFewRuns;
+    const std::size_t stride = format_.stride();
+    std::size_t sent = 0;
+    for (const VertexRun& run : vertexRuns(list.newVertices, list.samples.size(), most)) {
+        const std::size_t first = run.first * stride, bytes = (run.end - run.first) * stride;
+        attributes_.update(GL_ARRAY_BUFFER, first, mirror_.data() + first, bytes);
+        sent += bytes;
+    }
+    return sent;
+}
+
+void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& source, bool everything, bool onlyNew) {
     if (list.positionsChanged || everything) {
         positions_.fill(GL_ARRAY_BUFFER, list.positions.data(), list.positions.size_bytes());
         uploaded_ += list.positions.size_bytes();
     }
     const std::size_t stride = format_.stride();
+    newVertexBytes_ = (everything ? list.samples.size() : list.newVertices.size()) * sizeof(glm::vec3);
     if (stride == 0 || (list.newVertices.empty() && !everything)) return;
     const std::size_t size = list.samples.size() * stride;
     if (size > mirror_.capacity()) mirror_.reserve(size + size / 8);
@@ -70,18 +87,23 @@ void TerrainRenderer::uploadPool(const DrawList& list, const VertexSource& sourc
         for (std::size_t vertex = 0; vertex < list.samples.size(); ++vertex) write(list, source, vertex);
     else
         writeNew(list, source);
-    attributes_.refill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size());
-    uploaded_ += mirror_.size();
+    std::size_t sent = mirror_.size();
+    if (!everything && attributes_.grow(GL_STREAM_DRAW, mirror_.size()))
+        sent = uploadNew(list, onlyNew);
+    else
+        attributes_.refill(GL_ARRAY_BUFFER, mirror_.data(), mirror_.size());
+    uploaded_ += sent;
+    newVertexBytes_ += sent;
 }
 
-std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source) {
+std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source, bool onlyNew) {
     const ProfileScope scope("renderer: upload");
-    uploaded_ = 0;
+    uploaded_ = newVertexBytes_ = 0;
     const bool everything = !positions_.current().exists() || format_ != source.format() || version_ != source.version();
     format_ = source.format();
     version_ = source.version();
     if (!list.wholeGrid)
-        uploadPool(list, source, everything);
+        uploadPool(list, source, everything, onlyNew);
     else if (everything || list.positionsChanged)
         uploadSamples(grid, source);
     if (list.indicesChanged) {

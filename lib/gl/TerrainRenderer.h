@@ -44,8 +44,12 @@ public:
 /// and the user's shader programs act on them as on any shape.
 class TerrainRenderer {
 public:
-    /// Brings the buffers up to date with the list. Returns the bytes sent to GL.
-    std::size_t upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source);
+    /// Brings the buffers up to date with the list. Returns the bytes sent to GL. Attributes of vertices that are not new may be
+    /// sent once more where that is faster, unless `onlyNew`.
+    std::size_t upload(const DrawList& list, const SampleGrid& grid, const VertexSource& source, bool onlyNew = false);
+    /// Of the bytes of the last upload, those that came with new vertices: their positions, and all attributes that were sent. The
+    /// rest is positions of vertices that were there, and indices.
+    std::size_t newVertexBytes() const { return newVertexBytes_; }
     /// One draw call. Client array state is restored; the current colour and normal are undefined after it where the format has
     /// them.
     void draw() const;
@@ -59,7 +63,8 @@ private:
     void uploadSamples(const SampleGrid& grid, const VertexSource& source);
     void write(const DrawList& list, const VertexSource& source, std::size_t vertex);
     void writeNew(const DrawList& list, const VertexSource& source);
-    void uploadPool(const DrawList& list, const VertexSource& source, bool everything);
+    void uploadPool(const DrawList& list, const VertexSource& source, bool everything, bool onlyNew);
+    std::size_t uploadNew(const DrawList& list, bool onlyNew);
 
     GlStream positions_, indices_;
     GlBuffer attributes_;
@@ -67,7 +72,7 @@ private:
     std::uint64_t version_ = 0;
     std::vector<std::uint8_t> mirror_;  ///< attributes of a pool of vertices
     std::uint32_t indexCount_ = 0;
-    std::size_t uploaded_ = 0;
+    std::size_t uploaded_ = 0, newVertexBytes_ = 0;
 };
 
 }  // namespace terrain

@@ -1,6 +1,8 @@
 // A grid seen from straight above, so that each pixel says which cells were drawn.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -193,6 +195,49 @@ TEST_F(TerrainRendererDraws, NewAttributesWhenTheirVersionChanges)
         std::swap(own, renderer);
         for (const GLuint name : own.release()) glDeleteBuffers(1, &name);
     }
+}
+
+TEST_F(TerrainRendererDraws, FromAttributesOfWhichOnlyNewOnesWereSent)
+{
+    // A pool that grows and changes its samples here and there.
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> samples;
+    const ColouredSamples source(true);
+    const std::size_t stride = source.format().stride();
+    std::mt19937 random(8);
+    for (int frame = 0; frame < 60; ++frame) {
+        std::vector<std::uint32_t> fresh;
+        if (frame % 10 == 0)
+            for (std::uint32_t i = 0, count = 100 + random() % 500; i < count; ++i) {
+                fresh.push_back(std::uint32_t(samples.size()));
+                samples.push_back(0);
+                positions.emplace_back(0.0f);
+            }
+        for (int piece = int(random() % 4); piece > 0; --piece) {
+            const std::uint32_t first = random() % std::uint32_t(samples.size());
+            for (std::uint32_t i = first; i < std::min<std::uint32_t>(first + 20, std::uint32_t(samples.size())); ++i) fresh.push_back(i);
+        }
+        std::sort(fresh.begin(), fresh.end());
+        fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
+        for (const std::uint32_t vertex : fresh) samples[vertex] = random() % (kSide * kSide);
+        DrawList list;
+        list.positions = positions;
+        list.samples = samples;
+        list.newVertices = fresh;
+        list.positionsChanged = !fresh.empty();
+        const std::size_t sent = renderer.upload(list, grid, source, true);
+        const std::size_t news = frame == 0 ? samples.size() : fresh.size();
+        ASSERT_EQ(renderer.newVertexBytes(), news * (12 + stride)) << "frame " << frame;
+        ASSERT_EQ(sent, (fresh.empty() ? 0 : positions.size() * 12) + news * stride) << "frame " << frame;
+    }
+    const std::vector<GLuint> names = renderer.release();
+    std::vector<std::uint8_t> held(samples.size() * stride), expected(held.size());
+    glBindBuffer(GL_ARRAY_BUFFER, names.back());
+    glGetBufferSubData(GL_ARRAY_BUFFER, 0, GLsizeiptr(held.size()), held.data());
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    for (std::size_t i = 0; i < samples.size(); ++i) source.write(samples[i], expected.data() + i * stride);
+    EXPECT_EQ(held, expected);
+    glDeleteBuffers(GLsizei(names.size()), names.data());
 }
 
 TEST_F(TerrainRendererDraws, WithoutTouchingClientState)
