@@ -53,12 +53,19 @@
 */
 /*!
   \var SoSFInt32 SoChunkedLoDTerrain::memoryBudget
-  Megabytes that tiles may take in each view; those that were not drawn for longest make room. Default 256.
+  Megabytes that tiles may take in each view: meshes that are built, those on their way included. Those that were not drawn for longest make
+  room, and what would not fit stays as coarse as it is. It does not count what is kept beside tiles: bounds of the grid, a copy of
+  coordinates (none of an SoHeightMap), and positions, attributes and indices of what is on screen. The one tile that covers everything is built
+  whatever the budget. Full detail (pixelError 0) of a large terrain does not fit into the default. Default 256.
 */
 /*!
   \var SoSFInt32 SoChunkedLoDTerrain::uploadBudget
-  Kilobytes of vertices that tiles new on screen may send to GL in one frame; what exceeds it waits for the next. A tile
-  whose parts do not go up together within it stays as it is. 0 is no limit. Default 1024.
+  Kilobytes of vertices that tiles new on screen may send to GL in one frame: their positions and, as far as they have them, normals, colours
+  and texture coordinates (SoTerrainStatistics::newVertexBytes). What exceeds it waits for the next frame. Tiles take the place of a coarser
+  one all together; if they alone exceed the budget, they come in a frame in which nothing else does, so that every budget leads to the
+  whole picture. It does not limit what follows from the view and not from new tiles: positions, which slide, and indices of
+  all that is on screen; nor the first frame, nor what a change of normals, materials or textures makes new. 0 is no limit, and neither is any
+  with background FALSE. Default 1024.
 */
 /*!
   \var SoSFBool SoChunkedLoDTerrain::background

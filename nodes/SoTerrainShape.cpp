@@ -323,7 +323,9 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     const terrain::View camera = viewOf(state);
     const TerrainTextureUse::Frame texture = textures.update(action, camera, data->grid, attributes, number);
     if (!texture.problem.empty()) master->warnOnce(texture.problem.c_str());
-    const TerrainFrame frame{action, *data, camera, settingsFor(state, *data), attributes, texture, view};
+    terrain::LodSettings settings = settingsFor(state, *data);
+    settings.vertexBytes = sizeof(glm::vec3) + attributes.format().stride();
+    const TerrainFrame frame{action, *data, camera, settings, attributes, texture, view};
     if (!master->renderOwn(frame, statistics)) renderMesh(frame);
 
     statistics.converged = view.report.converged && texture.converged;

@@ -15,6 +15,7 @@ namespace {
 /// Tiles are asked for before they are needed: at this part of the pixel error, and within so much more than the window's width.
 constexpr float kEarly = 0.6f;
 constexpr double kMargin = 0.25;
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
 std::shared_ptr<const TileMesh> buildByKey(const std::shared_ptr<TileFactory>& factory, const TileKey& key) {
     return factory->build({key.level, key.column, key.row});
@@ -87,26 +88,34 @@ void ChunkedLod::choose() {
 }
 
 void ChunkedLod::chooseOnce() {
-    report_ = SelectionReport{};
-    drawn_.clear();
-    const std::size_t unlimited = std::numeric_limits<std::size_t>::max();
-    credit_ = settings_.uploadBudget > 0 && !settings_.complete ? settings_.uploadBudget : unlimited;
     cache_.setBudget(settings_.memoryBudget);
     // Takes in what was built since the last frame, so that it serves this one.
     cache_.endFrame();
     cache_.beginFrame();
-    const TileId root{tree_.rootLevel(), 0, 0};
-    if (cache_.buildNow(keyOf(root)) && !visit(root, 0.0f)) {
-        // Whatever the budget, something is drawn.
-        credit_ = unlimited;
-        const TileMesh& mesh = *cache_.find(keyOf(root));
-        draw(root, mesh, boxOf(root), 0.0f);
-        report_.converged = false;
+    mayExceed_ = false;
+    chooseTiles();
+    // What exceeds the budget by itself comes in a frame of its own, or it would never come.
+    if (wasTooMuch_ && credit_ == settings_.uploadBudget) {
+        mayExceed_ = true;
+        chooseTiles();
     }
     // What comes only now was not there to be chosen.
     const std::size_t seen = cache_.arrived();
     cache_.endFrame();
     isSettled_ = cache_.isIdle() && cache_.arrived() == seen;
+}
+
+void ChunkedLod::chooseTiles() {
+    report_ = SelectionReport{};
+    drawn_.clear();
+    wasTooMuch_ = false;
+    credit_ = settings_.uploadBudget > 0 && !settings_.complete ? settings_.uploadBudget : kUnlimited;
+    const TileId root{tree_.rootLevel(), 0, 0};
+    if (!cache_.buildNow(keyOf(root)) || visit(root, 0.0f)) return;
+    // Whatever the budget, something is drawn.
+    credit_ = kUnlimited;
+    draw(root, *cache_.find(keyOf(root)), boxOf(root), 0.0f);
+    report_.converged = false;
 }
 
 bool ChunkedLod::visit(const TileId& id, float parentPixels) {
@@ -117,7 +126,9 @@ bool ChunkedLod::visit(const TileId& id, float parentPixels) {
         return true;
     }
     const TileMesh& mesh = *cache_.find(keyOf(id));
-    const float pixels = isOutside ? 0.0f : space_->screenError(mesh.error, box);
+    // Full detail is asked for everywhere, not only where it shows.
+    const float outside = settings_.pixelError > 0.0f ? 0.0f : mesh.error;
+    const float pixels = isOutside ? outside : space_->screenError(mesh.error, box);
     const bool isLeaf = id.level <= tree_.leafLevel();
     if (pixels > settings_.pixelError && !isLeaf) {
         if (areChildrenReady(id, pixels) && visitChildren(id, pixels)) return true;
@@ -167,8 +178,33 @@ bool ChunkedLod::visitChildren(const TileId& id, float pixels) {
         drawn_.resize(drawnSoFar);
         credit_ = creditSoFar;
         report_.errorPixels = error;
-        return false;
+        // What lies further below may have taken all that there was.
+        return drawChildren(id, pixels);
     }
+    return true;
+}
+
+/// The children themselves, without any of theirs.
+bool ChunkedLod::drawChildren(const TileId& id, float pixels) {
+    report_.converged = false;
+    std::vector<std::pair<TileId, Box>> children;
+    std::size_t bytes = 0;
+    for (int i = 0; i < (id.hasFourChildren() ? 4 : 1); ++i) {
+        const TileId child = id.child(i);
+        if (!tree_.contains(child)) continue;
+        const Box box = boxOf(child);
+        if (settings_.cull && space_->isOutside(box)) continue;
+        children.emplace_back(child, box);
+        if (!slots_.contains(child)) bytes += vertexBytes(*cache_.find(keyOf(child)));
+    }
+    // The children of what is on screen need nothing else to come with them.
+    const bool exceeds = mayExceed_ && bytes > credit_ && slots_.contains(id);
+    if (bytes > credit_ && !exceeds) return false;
+    if (exceeds) {
+        mayExceed_ = false;
+        credit_ = bytes;
+    }
+    for (const auto& [child, box] : children) draw(child, *cache_.find(keyOf(child)), box, pixels);
     return true;
 }
 
@@ -186,7 +222,10 @@ float ChunkedLod::parentShare(const TileMesh& mesh, float parentPixels) const {
 bool ChunkedLod::draw(const TileId& id, const TileMesh& mesh, const Box& box, float parentPixels) {
     const auto slot = slots_.find(id);
     if (slot == slots_.end()) {
-        if (vertexBytes(mesh) > credit_) return false;
+        if (vertexBytes(mesh) > credit_) {
+            wasTooMuch_ = true;
+            return false;
+        }
         credit_ -= vertexBytes(mesh);
     }
     const float share = parentShare(mesh, parentPixels);

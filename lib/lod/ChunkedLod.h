@@ -40,12 +40,8 @@ public:
     std::uint32_t drawnTiles() const { return std::uint32_t(drawn_.size()); }
     /// Bytes of vertices of tiles that came on screen in the last selection.
     std::size_t placedBytes() const { return placedBytes_; }
-    static std::size_t vertexBytes(const TileMesh& mesh) { return mesh.at.size() * kVertexBytes; }
 
 private:
-    /// Position, normal and texture coordinates.
-    static constexpr std::size_t kVertexBytes = 32;
-
     struct Tile {
         TileId id;
         const TileMesh* mesh = nullptr;
@@ -73,14 +69,17 @@ private:
     // Choice of tiles
     void choose();
     void chooseOnce();
+    void chooseTiles();
     bool visit(const TileId& id, float parentPixels);
     bool areChildrenReady(const TileId& id, float pixels);
     /// Asks for what will be drawn when the camera turns or comes a little nearer.
     void prefetch(const TileId& id, float parentPixels);
     void prefetchChildren(const TileId& id, float pixels);
     bool visitChildren(const TileId& id, float pixels);
+    bool drawChildren(const TileId& id, float pixels);
     bool draw(const TileId& id, const TileMesh& mesh, const Box& box, float parentPixels);
     float parentShare(const TileMesh& mesh, float parentPixels) const;
+    std::size_t vertexBytes(const TileMesh& mesh) const { return mesh.at.size() * settings_.vertexBytes; }
 
     // The list
     void place(const SampleGrid& grid);
@@ -100,7 +99,9 @@ private:
     LodSettings settings_;
     std::optional<ScreenSpace> space_, wide_;  ///< what is in view, and what may soon be
     SelectionReport report_;
-    std::size_t credit_ = 0;  ///< bytes that may still come on screen
+    std::size_t credit_ = 0;   ///< bytes that may still come on screen
+    bool wasTooMuch_ = false;  ///< something did not come because of that
+    bool mayExceed_ = false;   ///< one group of tiles may come although it exceeds the budget
     bool isFirst_ = true;
     bool isSettled_ = false;  ///< nothing is being built, and all tiles that are there could be looked at
     std::size_t placedBytes_ = 0;

@@ -19,6 +19,7 @@ struct LodSettings {
     bool geomorph = false;                              ///< let vertices slide between the coarse and the fine surface
     std::size_t memoryBudget = std::size_t(256) << 20;  ///< bytes that tiles may take
     std::size_t uploadBudget = 0;  ///< bytes of vertices that tiles new on screen may send to GL in a frame; 0: no limit
+    std::size_t vertexBytes = 32;  ///< that a vertex takes in GL: position, normal and so on
     bool complete = false;         ///< wait for tiles that are built in the background, and send them whatever the upload budget
     bool clockwise = false;        ///< orientation of the triangles in the grid's (column, row) plane
 

@@ -142,8 +142,30 @@ TEST_P(ChunkedLodOver, GivesFullDetailForAPixelErrorOfZero)
 {
     const auto mesh = tiles(16);
     const View view = flightView(box, 3, 40);
-    const DrawList list = mesh->select(grid, view, completeSettings(0.0f));
+    LodSettings settings = completeSettings(0.0f);
+    const DrawList list = mesh->select(grid, view, settings);
     EXPECT_LE(worstScreenError(grid, list, groundOf(grid, list), view), kRounding);
+    EXPECT_EQ(list.report.errorPixels, 0.0f);
+    // Built in the background, and sent piece by piece.
+    const std::uint32_t triangles = list.report.triangles;
+    settings.complete = false;
+    settings.uploadBudget = std::size_t(64) << 10;
+    const auto runner = std::make_shared<ManualRunner>();
+    ChunkedLod streaming(model(), grid, 16, nullptr, runner);
+    SelectionReport report;
+    for (int frame = 0; frame == 0 || !report.converged; ++frame) {
+        ASSERT_LT(frame, 5000) << "never complete";
+        report = streaming.select(grid, view, settings).report;
+        runner->runAll();
+    }
+    EXPECT_EQ(report.errorPixels, 0.0f);
+    EXPECT_EQ(report.triangles, triangles);
+    // Wherever the camera looks, when nothing is to be left out.
+    settings = completeSettings(0.0f);
+    settings.cull = false;
+    const auto away = tiles(16);
+    const std::uint32_t everywhere = mesh->select(grid, view, settings).report.triangles;
+    EXPECT_EQ(away->select(grid, randomView(random, box), settings).report.triangles, everywhere);
 }
 
 TEST_P(ChunkedLodOver, GivesTheSameForTheSameAndRests)
@@ -284,6 +306,36 @@ TEST(ChunkedLod, KeepsTheUploadBudgetInEveryFrame)
     }
     EXPECT_GT(frames, 8) << "the budget can't have been kept";
     EXPECT_EQ(mesh.drawnTiles(), whole.drawnTiles());
+}
+
+TEST(ChunkedLod, ComesToTheWholePictureHoweverSmallTheUploadBudget)
+{
+    const Slow scene;
+    LodSettings settings = completeSettings(1.0f);
+    ChunkedLod whole(scene.model, scene.grid, 16, nullptr);
+    whole.select(scene.grid, scene.view(0), settings);
+    settings.complete = false;
+    // Smaller than a vertex, than most tiles, than some groups of four.
+    for (const std::size_t budget : {std::size_t(1), std::size_t(1000), std::size_t(8000)}) {
+        settings.uploadBudget = budget;
+        const auto runner = std::make_shared<ManualRunner>();
+        ChunkedLod mesh(scene.model, scene.grid, 16, nullptr, runner);
+        const std::size_t largestGroup = 4 * 17 * 17 * settings.vertexBytes;
+        std::uint32_t exceeded = 0;
+        for (int frame = 0;; ++frame) {
+            ASSERT_LT(frame, 3000) << "never complete";
+            const DrawList list = mesh.select(scene.grid, scene.view(0), settings);
+            ASSERT_LE(mesh.placedBytes(), std::max(budget, largestGroup));
+            ASSERT_EQ(mesh.placedBytes(), list.newVertices.size() * settings.vertexBytes);
+            exceeded += mesh.placedBytes() > budget;
+            if (list.report.converged) break;
+            runner->runAll();
+        }
+        EXPECT_EQ(mesh.drawnTiles(), whole.drawnTiles()) << "budget " << budget;
+        if (budget <= 1000) {
+            EXPECT_GT(exceeded, 0u) << "budget " << budget;
+        }
+    }
 }
 
 namespace {

@@ -95,7 +95,7 @@ TEST(LargeMaps, StreamInWithinTheirBudgets) {
         const std::size_t buffers = node->getStatistics().bufferBytes;
         EXPECT_GT(coveredPixels(stage.render(root.get())), 10000);
         const SoTerrainStatistics statistics = node->getStatistics();
-        // Positions and indices of all that is drawn go up in each frame, attributes when a tile is new.
+        ASSERT_LE(statistics.newVertexBytes, std::size_t(128) << 10) << "frame " << frames;
         ASSERT_LE(statistics.memoryBytes, (std::size_t(8) << 20) + bounds + 3 * std::max(buffers, statistics.bufferBytes) + (1u << 20)) << "frame " << frames;
         patches = std::max(patches, statistics.patches);
     }

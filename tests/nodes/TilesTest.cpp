@@ -1,11 +1,17 @@
 // Chunked LoD as a node: what is on screen while tiles are built, budgets, and nodes that go before their tiles come.
+#include <epoxy/gl.h>
+
 #include "Scenes.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <climits>
+#include <cstdio>
+#include <numeric>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <Inventor/SoDB.h>
 #include <Inventor/actions/SoSearchAction.h>
@@ -99,6 +105,100 @@ TEST(Tiles, KeepSmallBudgetsAndStillShowTheGround) {
     node->uploadBudget = 0;
     stage.render(root.get());
     EXPECT_FALSE(node->getStatistics().converged) << "it goes on when it may";
+    for (int frame = 0; !node->getStatistics().converged; ++frame) {
+        ASSERT_LT(frame, 5000) << "never complete";
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        stage.render(root.get());
+    }
+    EXPECT_LE(node->getStatistics().errorPixels, 1.0);
+}
+
+namespace {
+
+/// What goes to GL buffers, by call, for as long as one lives. Buffers must have been filled before: the first call finds the function.
+class SentToBuffers {
+public:
+    SentToBuffers() {
+        formerSubData = std::exchange(epoxy_glBufferSubData, subData);
+        formerData = std::exchange(epoxy_glBufferData, data);
+        arrays.clear();
+        indices.clear();
+    }
+    ~SentToBuffers() {
+        epoxy_glBufferSubData = formerSubData;
+        epoxy_glBufferData = formerData;
+    }
+    SentToBuffers(const SentToBuffers&) = delete;
+    SentToBuffers& operator=(const SentToBuffers&) = delete;
+
+    static std::size_t sum(const std::vector<std::size_t>& bytes, std::size_t from = 0) {
+        return bytes.size() <= from ? 0 : std::accumulate(bytes.begin() + std::ptrdiff_t(from), bytes.end(), std::size_t(0));
+    }
+    static inline std::vector<std::size_t> arrays, indices;  ///< bytes of each call
+
+private:
+    static void count(GLenum target, GLsizeiptr bytes) { (target == GL_ARRAY_BUFFER ? arrays : indices).push_back(std::size_t(bytes)); }
+    static void subData(GLenum target, GLintptr offset, GLsizeiptr bytes, const void* values) {
+        count(target, bytes);
+        formerSubData(target, offset, bytes, values);
+    }
+    static void data(GLenum target, GLsizeiptr bytes, const void* values, GLenum usage) {
+        if (values) count(target, bytes);
+        formerData(target, bytes, values, usage);
+    }
+    static inline PFNGLBUFFERSUBDATAPROC formerSubData;
+    static inline PFNGLBUFFERDATAPROC formerData;
+};
+
+}  // namespace
+
+TEST(Tiles, NewOnScreenSendNoMoreThanTheUploadBudget) {
+    const Surface surface = ground();
+    // Four tiles of 16 cells, at full detail, with 32 bytes a vertex, may have to come together: 36 KB.
+    for (const int budget : {40, 64, 256}) {
+        const auto root = tilesOver(surface, true);
+        auto* node = static_cast<SoChunkedLoDTerrain*>(terrainIn(root.get()));
+        node->tileSize = 16;
+        node->pixelError = 0.5f;
+        node->uploadBudget = budget;
+        Stage stage;
+        stage.render(tilesOver(surface, false).get());
+        std::size_t stride = 0, largest = 0, total = 0;
+        for (int frame = 0; frame < 60; ++frame) {
+            // It looks back now and then: what was seen before is there and could come all at once.
+            const float way = 2.0f * float(frame), ahead = (frame / 10) % 2 ? -150.0f : 150.0f;
+            const SbVec3f eye(150.0f + way, 160.0f + way, 90.0f);
+            root->replaceChild(0, cameraAt(eye, eye + SbVec3f(ahead, 0.7f * ahead, -70.0f), 1.0f, 1500.0f));
+            SentToBuffers sent;
+            stage.render(root.get());
+            const SoTerrainStatistics statistics = node->getStatistics();
+            EXPECT_EQ(SentToBuffers::sum(sent.arrays) + SentToBuffers::sum(sent.indices), statistics.uploadedBytes) << "frame " << frame;
+            // Positions go up whole, and before attributes.
+            const std::size_t positions = sent.arrays.empty() ? 0 : sent.arrays.front(), attributes = SentToBuffers::sum(sent.arrays, 1);
+            if (frame == 0) {
+                ASSERT_GT(positions, 0u);
+                stride = attributes / (positions / 12);
+                ASSERT_GT(stride, 0u);
+                continue;
+            }
+            ASSERT_LE(statistics.newVertexBytes, std::size_t(budget) << 10) << "frame " << frame;
+            ASSERT_EQ(statistics.newVertexBytes, attributes / stride * (12 + stride)) << "frame " << frame;
+            ASSERT_EQ(attributes % stride, 0u) << "frame " << frame;
+            // All else is positions and indices of what is drawn.
+            ASSERT_EQ(positions % 12, 0u) << "frame " << frame;
+            ASSERT_LE(sent.indices.size(), 1u) << "frame " << frame;
+            if (!sent.indices.empty()) {
+                ASSERT_EQ(sent.indices.front(), std::size_t(12) * statistics.triangles) << "frame " << frame;
+            }
+            largest = std::max(largest, statistics.newVertexBytes);
+            total += statistics.newVertexBytes;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        std::printf("uploadBudget %d KB: at most %zu KB of new vertices in a frame, %zu KB in all\n", budget, largest >> 10, total >> 10);
+        if (budget <= 64) {
+            EXPECT_GT(largest, std::size_t(budget) << 9) << "or the budget did not matter";
+        }
+    }
 }
 
 TEST(Tiles, MayGoBeforeTheyAreBuilt) {
