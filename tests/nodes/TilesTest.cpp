@@ -202,9 +202,16 @@ TEST(Tiles, NewOnScreenSendNoMoreThanTheUploadBudget) {
 }
 
 TEST(Tiles, MayGoBeforeTheyAreBuilt) {
-    const Surface surface = ground();
-    Stage stage;
-    for (int i = 0; i < 40; ++i) stage.render(tilesOver(surface, true).get());
+    const Surface surface = surfaceOf(fractalMap(65, 65, 20.0));
+    Stage stage(64, 48);
+    int unfinished = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const auto root = tilesOver(surface, true);
+        static_cast<SoChunkedLoDTerrain*>(terrainIn(root.get()))->tileSize = 8;
+        stage.render(root.get());
+        unfinished += !terrainIn(root.get())->getStatistics().converged;
+    }
+    EXPECT_EQ(unfinished, 1000) << "or nothing was in flight";
 }
 
 TEST(Tiles, FollowTheCoordinatesWhileTheyAreBuilt) {
