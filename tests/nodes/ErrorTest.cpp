@@ -9,6 +9,7 @@
 #include <Inventor/nodes/SoOrthographicCamera.h>
 #include <Inventor/nodes/SoScale.h>
 
+#include <SoTerrain/SoChunkedLoDTerrain.h>
 #include <SoTerrain/SoGeoMipmapTerrain.h>
 #include <SoTerrain/SoROAMTerrain.h>
 
@@ -101,12 +102,14 @@ TEST(PixelError, HoldsForEverySampleInViewOverAFlight) {
     const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
     Stage stage(kSide, kSide);
     for (const bool morphs : {true, false})
-        for (const auto& [kind, pixels] : {std::pair{Kind::Roam, 1.0f}, {Kind::Roam, 2.0f}, {Kind::Roam, 6.0f}, {Kind::GeoMipmap, 1.0f}, {Kind::GeoMipmap, 6.0f}}) {
+        for (const auto& [kind, pixels] : {std::pair{Kind::Roam, 1.0f}, {Kind::Roam, 2.0f}, {Kind::Roam, 6.0f}, {Kind::GeoMipmap, 1.0f}, {Kind::GeoMipmap, 6.0f},
+                                           {Kind::ChunkedLod, 1.0f}, {Kind::ChunkedLod, 2.0f}, {Kind::ChunkedLod, 6.0f}}) {
             const auto root = sceneOf(kind, surface, {.pixelError = pixels}, unlitTexture, flight(0));
             if (auto* roam = dynamic_cast<SoROAMTerrain*>(terrainIn(root.get()))) {
                 roam->geomorph = morphs;
                 roam->operationCount = 0;
             }
+            if (auto* chunkedLod = dynamic_cast<SoChunkedLoDTerrain*>(terrainIn(root.get()))) chunkedLod->morphing = morphs;
             if (auto* geoMipmap = dynamic_cast<SoGeoMipmapTerrain*>(terrainIn(root.get()))) geoMipmap->morphing = morphs;
             for (int frame = 0; frame < 8; ++frame) {
                 SCOPED_TRACE(std::string(nameOf(kind)) + ", pixelError " + std::to_string(pixels) + ", morphs " + std::to_string(morphs) + ", frame " + std::to_string(frame));
@@ -131,7 +134,7 @@ TEST(PixelError, IsUsedNotUndercutByFar) {
 TEST(PixelError, HoldsUnderAnOrthographicCamera) {
     const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
     Stage stage(kSide, kSide);
-    for (const auto& [kind, slant] : {std::pair{Kind::Roam, 0.2f}, {Kind::Roam, 1.0f}, {Kind::Roam, 5.0f}, {Kind::GeoMipmap, 0.2f}, {Kind::GeoMipmap, 5.0f}}) {
+    for (const auto& [kind, slant] : {std::pair{Kind::Roam, 0.2f}, {Kind::Roam, 1.0f}, {Kind::Roam, 5.0f}, {Kind::GeoMipmap, 0.2f}, {Kind::GeoMipmap, 5.0f}, {Kind::ChunkedLod, 0.2f}, {Kind::ChunkedLod, 5.0f}}) {
         auto* camera = new SoOrthographicCamera;
         const SbVec3f centre(128.0f, 128.0f, 20.0f);
         camera->position = centre + SbVec3f(60.0f, -100.0f, 100.0f * slant);
@@ -146,7 +149,7 @@ TEST(PixelError, HoldsUnderAnOrthographicCamera) {
 TEST(PixelError, HoldsUnderAScale) {
     const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
     Stage stage(kSide, kSide);
-    for (const auto& [kind, scale] : {std::pair{Kind::Roam, 0.25f}, {Kind::Roam, 2.0f}, {Kind::GeoMipmap, 0.25f}, {Kind::GeoMipmap, 2.0f}}) {
+    for (const auto& [kind, scale] : {std::pair{Kind::Roam, 0.25f}, {Kind::Roam, 2.0f}, {Kind::GeoMipmap, 0.25f}, {Kind::GeoMipmap, 2.0f}, {Kind::ChunkedLod, 0.25f}, {Kind::ChunkedLod, 2.0f}}) {
         const auto root = sceneOf(kind, surface, {}, [&, scale = scale](SoSeparator* group) {
             unlitTexture(group);
             auto* node = new SoScale;
