@@ -60,6 +60,7 @@
 #include "SoTerrainShapeP.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -175,7 +176,8 @@ void SoTerrainShape::warnOnce(const char * text) const
 
 int SoTerrainShape::validTileSize(int wanted, int least, int most) const
 {
-    const int valid = 1 << std::lround(std::log2(double(std::clamp(wanted, least, most))));
+    const unsigned int possible = unsigned(std::clamp(wanted, least, most)), below = std::bit_floor(possible), above = std::bit_ceil(possible);
+    const int valid = int(possible - below < above - possible ? below : above);
     if (valid != wanted)
         warnOnce(("tileSize: expected a power of two from " + std::to_string(least) + " to " + std::to_string(most) + ", found " +
                   std::to_string(wanted) + "; " + std::to_string(valid) + " is taken").c_str());
