@@ -62,7 +62,9 @@ void FrameStatistics::add(const FrameFigures& figures) {
     select_.push_back(t.selectMs);
     upload_.push_back(t.uploadMs);
     draw_.push_back(t.drawMs);
-    errorBound_ = std::max(errorBound_, t.errorPixels);
+    // A tile that stands in for others and reaches behind the eye has none.
+    if (std::isfinite(t.errorPixels)) errorBound_ = std::max(errorBound_.value_or(0.0), t.errorPixels);
+    unfinished_ += t.isComplete ? 0 : 1;
     memoryBytes_ = std::max(memoryBytes_, t.memoryBytes);
     bufferBytes_ = std::max(bufferBytes_, t.bufferBytes);
 }
@@ -78,8 +80,11 @@ std::string FrameStatistics::line() const {
                   frame_.size() == 1 ? "frame" : "frames", summarize(frame_).median, summarize(triangles_).mean);
     std::string line = text;
     if (!select_.empty()) {
-        std::snprintf(text, sizeof text, ", worst error bound %.2f px", errorBound_);
-        line += text;
+        if (errorBound_) {
+            std::snprintf(text, sizeof text, ", worst error bound %.2f px", *errorBound_);
+            line += text;
+        }
+        if (unfinished_ > 0) line += ", " + std::to_string(unfinished_) + " not complete";
     }
     return line;
 }
@@ -96,7 +101,9 @@ std::string FrameStatistics::json(const std::string& algorithm, const std::strin
         out["select_ms"] = {{"median", roundedMedian(select_)}};
         out["upload_ms"] = {{"median", roundedMedian(upload_)}};
         out["draw_ms"] = {{"median", roundedMedian(draw_)}};
-        out["error_px"] = {{"bound_max", rounded(errorBound_)}};
+        out["error_px"] = {{"bound_max", nullptr}};
+        if (errorBound_) out["error_px"]["bound_max"] = rounded(*errorBound_);
+        out["unfinished_frames"] = unfinished_;
         out["bytes"] = {{"memory", memoryBytes_}, {"buffers", bufferBytes_}};
     }
     if (!errors_.frames.empty()) {

@@ -26,6 +26,7 @@ struct FrameFigures {
         double errorPixels = 0.0;
         std::uint64_t memoryBytes = 0;
         std::uint64_t bufferBytes = 0;
+        bool isComplete = true;  ///< not waiting for tiles, nor stopped by a limit on work per frame
     };
     std::optional<Terrain> terrain;
 };
@@ -51,13 +52,15 @@ public:
     void setStart(double loadMs, double firstFrameMs);
     /// The JSON object, indented.
     std::string json(const std::string& algorithm, const std::string& renderer) const;
-    /// Frames, their median time, mean triangles and, where the shape tells it, the greatest error bound, in one line.
+    /// Frames, their median time, mean triangles and, where the shape tells it, the greatest error bound and how many frames were
+    /// not complete, in one line.
     std::string line() const;
     const ErrorSample& errors() const { return errors_; }
 
 private:
     std::vector<double> frame_, select_, upload_, draw_, triangles_;
-    double errorBound_ = 0.0;
+    std::optional<double> errorBound_;  ///< greatest of the frames that have one
+    std::uint64_t unfinished_ = 0;
     std::uint64_t memoryBytes_ = 0;
     std::uint64_t bufferBytes_ = 0;
     double loadMs_ = 0.0;

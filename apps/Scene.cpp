@@ -90,7 +90,7 @@ FrameFigures Scene::figures() {
         const SoTerrainStatistics s = shape->getStatistics();
         figures.triangles = s.triangles;
         figures.terrain = {s.selectMilliseconds, s.uploadMilliseconds, s.drawMilliseconds, s.patches,
-                           s.errorPixels,        s.memoryBytes,        s.bufferBytes};
+                           s.errorPixels,        s.memoryBytes,        s.bufferBytes,      s.converged};
         return figures;
     }
     if (terrain_ && terrain_->isOfType(SoQuadMesh::getClassTypeId())) {

@@ -46,11 +46,13 @@ bound() {
 }
 expect 0 "$TEST" -h "$SCRATCH/map.raw" -a chunkedlod -g 8 -e 0.5 -c --offscreen --stats
 awk -v b="$(bound)" 'BEGIN { exit !(b != "" && b <= 0.5) }' || fail "one frame of chunkedlod was not complete: $(cat "$SCRATCH/out")"
+grep -q '"unfinished_frames": 0' "$SCRATCH/out" || fail "--stats tells of unfinished frames: $(cat "$SCRATCH/out")"
 expect 0 "$TEST" -h "$SCRATCH/map.raw" -a chunkedlod -g 8 -e 0.5 -c --offscreen -v --frames 4 --output "$SCRATCH/tiles-%d.ppm" --stats
 awk -v b="$(bound)" 'BEGIN { exit !(b != "" && b <= 0.5) }' || fail "frames of chunkedlod were not complete: $(cat "$SCRATCH/out")"
 for algorithm in chunkedlod geomipmapping; do
     expect 0 "$TEST" -h "$SCRATCH/map.raw" -a "$algorithm" -g 8 -e 4 -c -v -s -A 300 -F 20 -p "$SCRATCH/tiles.csv" --offscreen=160x120 --stats
     [ "$(wc -l <"$SCRATCH/tiles.csv")" -gt 1 ] || fail "$algorithm: no frames with -s"
+    grep -q '"unfinished_frames": [0-9]' "$SCRATCH/out" || fail "$algorithm: --stats does not tell how many frames were unfinished"
     [ -s "$SCRATCH/err" ] && fail "$algorithm: $(cat "$SCRATCH/err")"
 done
 
