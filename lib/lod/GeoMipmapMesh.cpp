@@ -38,6 +38,7 @@ DrawList GeoMipmapMesh::select(const SampleGrid& grid, const View& view, const L
         if (vertices_.morph(grid, sliding_, detail_)) drawList.positionsChanged = true;
         report_ = {};
         report_.triangles = std::uint32_t(indexCount_ / 3);
+        report_.patches = std::uint32_t(drawn_.size());
         report_.errorPixels = boundError();
     }
     drawList.positions = vertices_.positions();
