@@ -44,8 +44,11 @@
 */
 /*!
   \var SoSFBool SoGeoMipmapTerrain::morphing
-  Whether vertices slide from one level to the next, so that nothing pops. It begins at 0.95 pixelError, and the error stays within pixelError
-  all the while. Neighbours differ by one level at most then. Default TRUE.
+  Whether vertices slide from one level to the next, so that nothing pops. The slide takes the last 5 % of pixelError, more where that exceeds 2
+  (45 % at 6 pixels, half at most), because larger errors change faster as the camera moves; the error stays within pixelError all the while.
+  So no sample moves by more than 0.25 pixels from frame to frame at a tenth of a cell a frame, for a pixelError up to 6 and an eye a cell and a
+  half above the ground or higher. It grows in proportion to the speed, and with what is larger than 6. Neighbours differ by one level at
+  most. Default TRUE.
 */
 
 #include <SoTerrain/SoGeoMipmapTerrain.h>

@@ -52,6 +52,11 @@ struct GeoMipmapMesh::Visit {
     const Turned* turned;  ///< null: leave out what is outside
 };
 
+float GeoMipmapMesh::morphStart(float pixelError) {
+    constexpr float kNarrowest = 0.05f, kWidest = 0.5f, kFullWidth = 0.0125f;
+    return pixelError * (1.0f - std::clamp(kFullWidth * pixelError * pixelError, kNarrowest, kWidest));
+}
+
 void GeoMipmapMesh::choose(const SampleGrid& grid) {
     for (const BlockAt& at : chosen_) detail_[at] = kHidden;
     chosen_.clear();
@@ -79,10 +84,13 @@ void GeoMipmapMesh::visit(const Visit& v, int boundsLevel, int column, int row, 
             visit(v, boundsLevel - 1, x, y, mayBeOutside);
 }
 
-/// Whether a block beside, or one next to that, may be in view.
+/// Whether a block near by may be in view.
 bool GeoMipmapMesh::isNextToView(const Visit& v, const Box& box) const {
-    const float cells = float(2 * layout_.tileSize + 1);
-    const glm::vec3 reach = v.space.direction() == ErrorDirection::Vertical ? glm::vec3(cells, cells, 0.0f) : box.half * 4.0f;
+    // Where slides are wide, neighbours differ by less and more blocks have a say.
+    const int blocks = settings_.pixelError > 2.0f ? 4 : 2;
+    const float cells = float(blocks * layout_.tileSize + 1);
+    const glm::vec3 reach =
+        v.space.direction() == ErrorDirection::Vertical ? glm::vec3(cells, cells, 0.0f) : box.half * float(2 * blocks);
     return !v.space.isOutside({box.centre, box.half + reach});
 }
 

@@ -25,7 +25,7 @@ DrawList GeoMipmapMesh::select(const SampleGrid& grid, const View& view, const L
         view_ = view;
         settings_ = settings;
         morphing_ = settings.geomorph && settings.pixelError > 0.0f;
-        limit_ = morphing_ ? kMorphStart * settings.pixelError : settings.pixelError;
+        limit_ = morphing_ ? morphStart(settings.pixelError) : settings.pixelError;
         choose(grid);
         settle();
         list();

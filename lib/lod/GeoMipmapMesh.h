@@ -21,7 +21,7 @@ namespace terrain {
 /// takes would have too large an error, the coarser one is refined.
 ///
 /// Geomorph (de Boer's trilinear mip-mapping). A block's detail is its level and, behind the point, how far it has come to the next
-/// coarser one: nothing where the error of that one is pixelError, all the way where it is `kMorphStart` pixelError. Drawn is
+/// coarser one: nothing where the error of that one is pixelError, all the way where it is morphStart(pixelError). Drawn is
 /// the average, over x in [0, 1], of the meshes whose blocks have the levels floor(detail + x). All of these are made of edges of
 /// the finest, because neighbours differ by at most one level; and as each of them keeps the error within pixelError, their average
 /// does too. Nothing moves at a switch of levels. Blocks at the far borders that are not of full size switch without sliding.
@@ -29,7 +29,10 @@ namespace terrain {
 /// `triangleBudget` and `operationLimit` are not used. The mesh keeps no pointer to samples.
 class GeoMipmapMesh : public LodAlgorithm {
 public:
-    static constexpr float kMorphStart = 0.95f;
+    /// The error on screen at which a level is all there, in pixels. What slides goes as far as pixelError while it comes nearer by
+    /// the part 1 - morphStart() / pixelError of its distance, which itself is the less the larger pixelError is: so that nothing
+    /// moves faster than at 2 pixels, that part grows with the square of pixelError.
+    static float morphStart(float pixelError);
 
     explicit GeoMipmapMesh(std::shared_ptr<const GeoMipmapErrors> errors);
 
