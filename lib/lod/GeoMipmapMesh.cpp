@@ -12,7 +12,7 @@ namespace terrain {
 
 GeoMipmapMesh::GeoMipmapMesh(std::shared_ptr<const GeoMipmapErrors> errors)
     : errors_(std::move(errors)), layout_(errors_->layout()), vertices_(errors_), detail_(layout_), factor_(layout_.blockCount()),
-      queued_(layout_.blockCount()) {}
+      queued_(layout_.blockCount()), emitted_(layout_.blockCount()) {}
 
 DrawList GeoMipmapMesh::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
     const ProfileScope scope("geo mip-mapping: select");
@@ -31,7 +31,7 @@ DrawList GeoMipmapMesh::select(const SampleGrid& grid, const View& view, const L
         list();
         if (otherTriangles || drawn_ != drawnBefore_) {
             vertices_.update(grid, drawn_, drawnBefore_);
-            emit(grid);
+            emit(grid, otherTriangles);
             drawList.indicesChanged = true;
             drawList.positionsChanged = !vertices_.newVertices().empty();
         }
@@ -63,9 +63,38 @@ void GeoMipmapMesh::list() {
     }
 }
 
-void GeoMipmapMesh::emit(const SampleGrid& grid) {
+/// What is drawn of most blocks is what was drawn before, and many in a row: their indices are copied.
+void GeoMipmapMesh::emit(const SampleGrid& grid, bool everything) {
+    indices_.swap(indicesBefore_);
     indexCount_ = 0;
-    for (const DrawnBlock& drawn : drawn_) emitBlock(grid, drawn);
+    IndexRange run;
+    const auto copyRun = [&] {
+        makeRoom(run.count);
+        std::copy_n(indicesBefore_.data() + run.first, run.count, indices_.data() + indexCount_);
+        indexCount_ += run.count;
+    };
+    for (const DrawnBlock& drawn : drawn_) {
+        IndexRange& range = emitted_[drawn.at.number];
+        if (!everything && vertices_.isAsBefore(drawn)) {
+            if (run.first + run.count != range.first) {
+                copyRun();
+                run = {range.first, 0};
+            }
+            range.first = std::uint32_t(indexCount_) + run.count;
+            run.count += range.count;
+            continue;
+        }
+        copyRun();
+        run = {};
+        range.first = std::uint32_t(indexCount_);
+        emitBlock(grid, drawn);
+        range.count = std::uint32_t(indexCount_) - range.first;
+    }
+    copyRun();
+}
+
+void GeoMipmapMesh::makeRoom(std::size_t count) {
+    if (indexCount_ + count > indices_.size()) indices_.resize(std::max(indexCount_ + count, 2 * indices_.size()));
 }
 
 void GeoMipmapMesh::emitBlock(const SampleGrid& grid, const DrawnBlock& drawn) {
@@ -92,10 +121,9 @@ void GeoMipmapMesh::emitBlock(const SampleGrid& grid, const DrawnBlock& drawn) {
 }
 
 void GeoMipmapMesh::emitTriangles(std::span<const GeoMipmapShape::Triangle> triangles, const std::uint32_t* vertices) {
-    const std::size_t first = indexCount_;
+    makeRoom(3 * triangles.size());
+    std::uint32_t* out = indices_.data() + indexCount_;
     indexCount_ += 3 * triangles.size();
-    if (indexCount_ > indices_.size()) indices_.resize(std::max(indexCount_, 2 * indices_.size()));
-    std::uint32_t* out = indices_.data() + first;
     const std::size_t second = settings_.clockwise ? 2 : 1, third = 3 - second;
     for (const GeoMipmapShape::Triangle& triangle : triangles) {
         *out++ = vertices[triangle[0]];
@@ -120,7 +148,7 @@ std::size_t GeoMipmapMesh::bytes() const {
     // Its share of the table, which meshes and their vertices refer to.
     const std::size_t table = 2 * errors_->bytes() / std::size_t(std::max(2L, errors_.use_count()));
     return table + vertices_.bytes() + detail_.bytes() + held(factor_) + queued_.capacity() / 8 + held(chosen_) + held(queue_) +
-           held(drawn_) + held(drawnBefore_) + held(sliding_) + held(indices_);
+           held(drawn_) + held(drawnBefore_) + held(sliding_) + held(indices_) + held(indicesBefore_) + held(emitted_);
 }
 
 int GeoMipmapMesh::level(int blockColumn, int blockRow) const {

@@ -50,7 +50,8 @@ private:
 
     // GeoMipmapMesh.cpp: triangles
     void list();
-    void emit(const SampleGrid& grid);
+    void emit(const SampleGrid& grid, bool everything);
+    void makeRoom(std::size_t count);
     void emitBlock(const SampleGrid& grid, const DrawnBlock& drawn);
     void emitTriangles(std::span<const GeoMipmapShape::Triangle> triangles, const std::uint32_t* vertices);
     void emitSolid(const SampleGrid& grid, const DrawnBlock& drawn, std::span<const GeoMipmapShape::Triangle> triangles,
@@ -91,6 +92,11 @@ private:
     std::vector<BlockAt> queue_;
     std::vector<DrawnBlock> drawn_, drawnBefore_, sliding_;
     std::vector<std::uint32_t> indices_;  ///< the first indexCount_ are in use
+    std::vector<std::uint32_t> indicesBefore_;
+    struct IndexRange {
+        std::uint32_t first = 0, count = 0;
+    };
+    std::vector<IndexRange> emitted_;  ///< by block, in indices_
     std::size_t indexCount_ = 0;
     SelectionReport report_;
 };

@@ -64,6 +64,15 @@ glm::ivec2 GeoMipmapVertices::sampleOf(const Extent& e, int level, int number) c
     return e.from + glm::ivec2(e.cells.x ? lineAt(line.x, e.cells.x, level) : 0, e.cells.y ? lineAt(line.y, e.cells.y, level) : 0);
 }
 
+/// All samples of a range, in the order of its vertices.
+template <class Visit>
+void GeoMipmapVertices::forSamples(const Extent& e, int level, const Visit& visit) const {
+    for (int line = 1; line <= e.count.y; ++line) {
+        const int row = e.from.y + (e.cells.y ? lineAt(line, e.cells.y, level) : 0);
+        for (int i = 1; i <= e.count.x; ++i) visit(glm::ivec2(e.from.x + (e.cells.x ? lineAt(i, e.cells.x, level) : 0), row));
+    }
+}
+
 void GeoMipmapVertices::use(const SampleGrid& grid, std::uint32_t number, std::uint8_t level) {
     Range& range = ranges_[number];
     ++range.users;
@@ -108,16 +117,17 @@ void GeoMipmapVertices::allocate(const SampleGrid& grid, std::uint32_t number) {
 void GeoMipmapVertices::place(const SampleGrid& grid, std::uint32_t number, bool isNew) {
     const Range& range = ranges_[number];
     const Extent e = extent(number, range.level);
-    for (int i = 0; i < e.count.x * e.count.y; ++i) {
-        const glm::ivec2 sample = sampleOf(e, range.level, i);
-        const std::uint32_t vertex = range.first + std::uint32_t(i);
+    std::uint32_t vertex = range.first;
+    forSamples(e, range.level, [&](const glm::ivec2& sample) {
         // What lies in a hole is part of a range, but of no triangle.
         const glm::vec3 p = grid.position(sample.x, sample.y);
         positions_[vertex] = std::isfinite(p.x + p.y + p.z) ? p : glm::vec3(0.0f);
-        if (!isNew) continue;
-        samples_[vertex] = std::uint32_t(grid.index(sample.x, sample.y));
-        newVertices_.push_back(vertex);
-    }
+        if (isNew) {
+            samples_[vertex] = std::uint32_t(grid.index(sample.x, sample.y));
+            newVertices_.push_back(vertex);
+        }
+        ++vertex;
+    });
 }
 
 void GeoMipmapVertices::update(const SampleGrid& grid, std::span<const DrawnBlock> blocks, std::span<const DrawnBlock> before) {
@@ -143,7 +153,7 @@ void GeoMipmapVertices::update(const SampleGrid& grid, std::span<const DrawnBloc
     for (const DrawnBlock& drawn : blocks) {
         State& state = states_[drawn.at.number];
         if (state.drawn) continue;
-        state = {drawn.level, drawn.border, true, update_};
+        state = {drawn.level, drawn.border, true, update_, update_};
         const std::array<std::uint32_t, 9> ranges = rangesOf(drawn.at);
         for (std::size_t corner = 0; corner < 4; ++corner) use(grid, ranges[corner], 0);
         for (std::size_t side = 0; side < 4; ++side) use(grid, ranges[4 + side], drawn.border[side]);

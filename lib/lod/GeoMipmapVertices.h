@@ -67,6 +67,9 @@ public:
     /// themselves, for the borders of others. True when any vertex has moved.
     bool morph(const SampleGrid& grid, std::span<const DrawnBlock> sliding, const BlockDetails& detail);
 
+    /// Whether the vertices of a block were the same before the last update.
+    bool isAsBefore(const DrawnBlock& drawn) const { return states_[drawn.at.number].since != update_; }
+
     std::span<const glm::vec3> positions() const { return positions_; }
     std::span<const std::uint32_t> samples() const { return samples_; }
     std::span<const std::uint32_t> newVertices() const { return newVertices_; }
@@ -81,12 +84,13 @@ private:
         std::uint8_t level = kUnused;
         std::uint8_t users = 0;  ///< blocks that draw it
     };
-    /// What is drawn of a block, and the update that found it so.
+    /// What is drawn of a block, and the first and the last update that found it so.
     struct State {
         std::uint8_t level = 0;
         std::array<std::uint8_t, 4> border{};
         bool drawn = false;
         std::uint16_t update = 0;
+        std::uint16_t since = 0;
     };
     /// Where a range's vertices stand: the sample before the first one, and the lines across which they go on, by number.
     struct Extent {
@@ -106,6 +110,8 @@ private:
     std::array<std::uint32_t, 9> rangesOf(const BlockAt& at) const;
     Extent extent(std::uint32_t range, int level) const;
     glm::ivec2 sampleOf(const Extent& extent, int level, int number) const;
+    template <class Visit>
+    void forSamples(const Extent& extent, int level, const Visit& visit) const;
     int lineAt(int line, int cells, int level) const;
 
     void use(const SampleGrid& grid, std::uint32_t number, std::uint8_t level);
