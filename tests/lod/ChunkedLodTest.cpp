@@ -97,7 +97,6 @@ protected:
 
     TerrainModel model() const { return {std::make_shared<BoxPyramid>(grid), nullptr, nullptr}; }
     std::unique_ptr<ChunkedLod> tiles(int tileCells) const { return std::make_unique<ChunkedLod>(model(), grid, tileCells, nullptr); }
-    View nextView(int i) { return i % 3 == 0 ? randomView(random, box) : flightView(box, i, 40); }
     int viewCount() const { return grid.columns() * grid.rows() > 20000 ? 8 : 20; }
     float nextError(int i) const { return std::array{0.5f, 1.0f, 2.0f, 6.0f, 40.0f}[std::size_t(i % 5)]; }
 };
@@ -109,7 +108,7 @@ TEST_P(ChunkedLodOver, CoversWhatIsInViewOnceAndKeepsThePromise)
     for (const int tileCells : {8, 16, 64}) {
         const auto mesh = tiles(tileCells);
         for (int i = 0; i < viewCount(); ++i) {
-            const View view = nextView(i);
+            const View view = nextView(random, box, i);
             const LodSettings settings = completeSettings(nextError(i));
             const DrawList list = mesh->select(grid, view, settings);
             const auto ground = groundOf(grid, list);
@@ -132,7 +131,7 @@ TEST_P(ChunkedLodOver, LeavesNoEdgeOpenBetweenTiles)
             LodSettings settings = completeSettings(nextError(i));
             settings.cull = false;
             settings.clockwise = clockwise;
-            const DrawList list = mesh->select(grid, nextView(i), settings);
+            const DrawList list = mesh->select(grid, nextView(random, box, i), settings);
             ASSERT_EQ(openEdges(grid, trianglesOf(grid, list)), 0) << GetParam() << ", view " << i << ", " << mesh->drawnTiles() << " tiles";
         }
     }
@@ -172,7 +171,7 @@ TEST_P(ChunkedLodOver, GivesTheSameForTheSameAndRests)
 {
     const auto mesh = tiles(16), other = tiles(16);
     for (int i = 0; i < 6; ++i) {
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         const LodSettings settings = completeSettings(nextError(i));
         const DrawList a = mesh->select(grid, view, settings);
         const std::vector<std::uint32_t> indices(a.indices.begin(), a.indices.end());
@@ -190,7 +189,7 @@ TEST_P(ChunkedLodOver, CanBeFollowedByWhatItSaysHasChanged)
     const auto mesh = tiles(16);
     std::vector<std::uint32_t> samples;
     for (int i = 0; i < viewCount(); ++i) {
-        const DrawList list = mesh->select(grid, nextView(i), completeSettings(nextError(i)));
+        const DrawList list = mesh->select(grid, nextView(random, box, i), completeSettings(nextError(i)));
         samples.resize(list.samples.size(), 0xffffffffu);
         for (const std::uint32_t vertex : list.newVertices) samples[vertex] = list.samples[vertex];
         for (const std::uint32_t vertex : list.indices) ASSERT_EQ(samples[vertex], list.samples[vertex]) << "view " << i;

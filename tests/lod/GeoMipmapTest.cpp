@@ -31,18 +31,6 @@ protected:
     const Box box = GetParam().box();
     std::mt19937 random{2024};
 
-    LodSettings randomSettings()
-    {
-        constexpr float errors[] = {0.5f, 1.0f, 2.0f, 6.0f, 40.0f};
-        LodSettings settings;
-        settings.pixelError = errors[uniformInt(random, 0, 4)];
-        settings.cull = uniformInt(random, 0, 1) != 0;
-        settings.geomorph = uniformInt(random, 0, 1) != 0;
-        settings.clockwise = uniformInt(random, 0, 3) == 0;
-        return settings;
-    }
-    /// Now a jump, now a step of a flight.
-    View nextView(int i) { return i % 3 == 0 ? randomView(random, box) : flightView(box, i, 40); }
     /// Enough views for a large map, and not too many.
     int viewCount() const { return grid.columns() * grid.rows() > 20000 ? 8 : 20; }
 };
@@ -60,8 +48,8 @@ TEST_P(GeoMipmapOver, HasNoCracksOverlapsOrGaps)
     for (const int tileSize : {2, 4, 8, 16, 64}) {
         GeoMipmapMesh mesh(errorsOf(grid, tileSize));
         for (int i = 0; i < viewCount(); ++i) {
-            const LodSettings settings = randomSettings();
-            const View view = nextView(i);
+            const LodSettings settings = randomSettings(random);
+            const View view = nextView(random, box, i);
             const DrawList list = mesh.select(grid, view, settings);
             ASSERT_EQ("", meshProblem(grid, list, view, settings.clockwise, !settings.cull)) << described(settings, i, tileSize);
         }
@@ -89,8 +77,8 @@ TEST_P(GeoMipmapOver, DrawsEverySampleInViewWithinPixelError)
     for (const int tileSize : {2, 4, 8, 16, 64}) {
         GeoMipmapMesh mesh(errorsOf(grid, tileSize));
         for (int i = 0; i < viewCount(); ++i) {
-            const LodSettings settings = randomSettings();
-            const View view = nextView(i);
+            const LodSettings settings = randomSettings(random);
+            const View view = nextView(random, box, i);
             const DrawList list = mesh.select(grid, view, settings);
             ASSERT_TRUE(list.report.converged);
             ASSERT_LE(list.report.errorPixels, settings.pixelError) << described(settings, i, tileSize);
@@ -108,7 +96,7 @@ TEST_P(GeoMipmapOver, GivesFullDetailForAPixelErrorOfZero)
     for (int i = 0; i < 4; ++i) {
         settings.cull = i % 2;
         settings.geomorph = i / 2;
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         const DrawList list = mesh.select(grid, view, settings);
         EXPECT_EQ(list.report.errorPixels, 0.0f);
         EXPECT_EQ("", meshProblem(grid, list, view, false, !settings.cull));
@@ -125,7 +113,7 @@ TEST_P(GeoMipmapOver, RestsWhenNothingChanges)
     LodSettings settings;
     for (int i = 0; i < 6; ++i) {
         settings.geomorph = i % 2;
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         const std::uint32_t triangles = mesh.select(grid, view, settings).report.triangles;
         const DrawList again = mesh.select(grid, view, settings);
         EXPECT_FALSE(again.positionsChanged);
@@ -141,7 +129,7 @@ TEST_P(GeoMipmapOver, CanBeFollowedByWhatItSaysHasChanged)
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> samples, indices;
     for (int i = 0; i < 2 * viewCount(); ++i) {
-        const DrawList list = mesh.select(grid, nextView(i / 2), randomSettings());
+        const DrawList list = mesh.select(grid, nextView(random, box, i / 2), randomSettings(random));
         if (list.positionsChanged) positions.assign(list.positions.begin(), list.positions.end());
         if (list.indicesChanged) indices.assign(list.indices.begin(), list.indices.end());
         samples.resize(list.samples.size(), kNoVertex);
@@ -161,8 +149,8 @@ TEST_P(GeoMipmapOver, GivesWhatAFreshMeshWouldGive)
     const auto errors = errorsOf(grid, 8);
     GeoMipmapMesh travelled(errors);
     for (int i = 0; i < viewCount(); ++i) {
-        const LodSettings settings = randomSettings();
-        const View view = nextView(i);
+        const LodSettings settings = randomSettings(random);
+        const View view = nextView(random, box, i);
         GeoMipmapMesh fresh(errors);
         const DrawList a = travelled.select(grid, view, settings), b = fresh.select(grid, view, settings);
         ASSERT_EQ(a.indices.size(), b.indices.size());

@@ -21,8 +21,6 @@ protected:
     const TerrainModel model = GetParam().model();
     const Box box = GetParam().box();
     std::mt19937 random{77};
-
-    View nextView(int i) { return i % 3 == 0 ? randomView(random, box) : flightView(box, i, 40); }
 };
 
 }  // namespace
@@ -36,7 +34,7 @@ TEST_P(RoamLimitsOver, NeverExceedsTheTriangleBudget)
         settings.cull = i % 2;
         settings.geomorph = i % 5 < 2;
         settings.triangleBudget = std::uint32_t(i % 7 == 0 ? uniformInt(random, 2, 20) : uniformInt(random, 20, 3000));
-        const DrawList list = mesh.select(grid, nextView(i), settings);
+        const DrawList list = mesh.select(grid, nextView(random, box, i), settings);
         ASSERT_LE(list.report.triangles, settings.triangleBudget) << "view " << i;
         ASSERT_LE(mesh.meshTriangles(), settings.triangleBudget) << "view " << i;
         ASSERT_EQ(list.indices.size(), 3 * list.report.triangles);
@@ -51,7 +49,7 @@ TEST_P(RoamLimitsOver, KeepsTheTriangleBudgetUnderAnOperationLimitToo)
         settings.pixelError = 0.2f;
         settings.triangleBudget = std::uint32_t(uniformInt(random, 2, 3000));
         settings.operationLimit = std::uint32_t(uniformInt(random, 1, 200));
-        ASSERT_LE(mesh.select(grid, nextView(i), settings).report.triangles, settings.triangleBudget) << "view " << i;
+        ASSERT_LE(mesh.select(grid, nextView(random, box, i), settings).report.triangles, settings.triangleBudget) << "view " << i;
     }
 }
 
@@ -75,13 +73,13 @@ TEST_P(RoamLimitsOver, NeverExceedsTheOperationLimitAfterTheFirstSelection)
     RoamMesh mesh(model, grid);
     LodSettings settings;
     settings.pixelError = 0.5f;
-    mesh.select(grid, nextView(0), settings);
+    mesh.select(grid, nextView(random, box, 0), settings);
     for (int i = 1; i < 60; ++i) {
         // A single split may force two more on each level of the hierarchy.
         const int forced = 2 * model.errors->exponent() + 1;
         settings.operationLimit = std::uint32_t(uniformInt(random, forced, 200));
         settings.cull = i % 4 != 0;
-        const SelectionReport report = mesh.select(grid, nextView(i), settings).report;
+        const SelectionReport report = mesh.select(grid, nextView(random, box, i), settings).report;
         ASSERT_LE(report.splits + report.merges, settings.operationLimit) << "view " << i;
     }
 }
@@ -92,9 +90,9 @@ TEST_P(RoamLimitsOver, ReachesByStepsWhatOneSelectionGives)
     LodSettings settings;
     settings.pixelError = 1.0f;
     settings.geomorph = false;
-    mesh.select(grid, nextView(0), settings);
+    mesh.select(grid, nextView(random, box, 0), settings);
     for (int i = 1; i < 8; ++i) {
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         settings.operationLimit = 50;
         int steps = 0;
         while (!mesh.select(grid, view, settings).report.converged)
@@ -114,7 +112,7 @@ TEST_P(RoamLimitsOver, ComesToRestWithABudgetAndALimit)
     settings.triangleBudget = 600;
     settings.operationLimit = 40;
     for (int i = 0; i < 8; ++i) {
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         int steps = 0;
         while (!mesh.select(grid, view, settings).report.converged)
             ASSERT_LT(++steps, 2000) << "view " << i << " does not come to rest";

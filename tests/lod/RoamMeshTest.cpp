@@ -25,18 +25,6 @@ protected:
     const Box box = GetParam().box();
     std::mt19937 random{2024};
 
-    LodSettings randomSettings()
-    {
-        constexpr float errors[] = {0.5f, 1.0f, 2.0f, 6.0f, 40.0f};
-        LodSettings settings;
-        settings.pixelError = errors[uniformInt(random, 0, 4)];
-        settings.cull = uniformInt(random, 0, 1) != 0;
-        settings.geomorph = uniformInt(random, 0, 1) != 0;
-        settings.clockwise = uniformInt(random, 0, 3) == 0;
-        return settings;
-    }
-    /// Now a jump, now a step of a flight.
-    View nextView(int i) { return i % 3 == 0 ? randomView(random, box) : flightView(box, i, 40); }
     /// Enough views for a large map, and not too many.
     int viewCount() const { return grid.columns() * grid.rows() > 20000 ? 15 : 30; }
 };
@@ -53,8 +41,8 @@ TEST_P(RoamMeshOver, HasNoCracksOverlapsOrGaps)
 {
     RoamMesh mesh(model, grid);
     for (int i = 0; i < viewCount(); ++i) {
-        const LodSettings settings = randomSettings();
-        const View view = nextView(i);
+        const LodSettings settings = randomSettings(random);
+        const View view = nextView(random, box, i);
         const DrawList list = mesh.select(grid, view, settings);
         ASSERT_EQ("", meshProblem(grid, list, view, settings.clockwise, !settings.cull)) << described(settings, i);
     }
@@ -78,8 +66,8 @@ TEST_P(RoamMeshOver, DrawsEverySampleInViewWithinPixelError)
 {
     RoamMesh mesh(model, grid);
     for (int i = 0; i < viewCount(); ++i) {
-        const LodSettings settings = randomSettings();
-        const View view = nextView(i);
+        const LodSettings settings = randomSettings(random);
+        const View view = nextView(random, box, i);
         const DrawList list = mesh.select(grid, view, settings);
         ASSERT_TRUE(list.report.converged);
         ASSERT_LE(list.report.errorPixels, settings.pixelError) << described(settings, i);
@@ -92,10 +80,10 @@ TEST_P(RoamMeshOver, KeepsItsBoundWhenLimitsStopIt)
 {
     RoamMesh mesh(model, grid);
     for (int i = 0; i < 2 * viewCount(); ++i) {
-        LodSettings settings = randomSettings();
+        LodSettings settings = randomSettings(random);
         if (i % 2) settings.triangleBudget = std::uint32_t(uniformInt(random, 50, 2000));
         if (i % 3) settings.operationLimit = std::uint32_t(uniformInt(random, 1, 300));
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         const DrawList list = mesh.select(grid, view, settings);
         if (!std::isfinite(list.report.errorPixels)) continue;
         const std::vector<GridTriangle> triangles = trianglesOf(grid, list);
@@ -115,7 +103,7 @@ TEST_P(RoamMeshOver, GivesFullDetailForAPixelErrorOfZero)
     for (int i = 0; i < 4; ++i) {
         settings.cull = i % 2;
         settings.geomorph = i / 2;
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         const DrawList list = mesh.select(grid, view, settings);
         EXPECT_EQ(list.report.errorPixels, 0.0f);
         EXPECT_EQ("", meshProblem(grid, list, view, false, !settings.cull));
@@ -132,7 +120,7 @@ TEST_P(RoamMeshOver, SettlesAfterASelectionWithoutLimits)
     LodSettings settings;
     for (int i = 0; i < 6; ++i) {
         settings.geomorph = i % 2;
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         mesh.select(grid, view, settings);
         const std::uint32_t triangles = mesh.meshTriangles();
         const DrawList again = mesh.select(grid, view, settings);
@@ -151,9 +139,9 @@ TEST_P(RoamMeshOver, CanBeFollowedByWhatItSaysHasChanged)
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> samples, indices;
     for (int i = 0; i < 2 * viewCount(); ++i) {
-        LodSettings settings = randomSettings();
+        LodSettings settings = randomSettings(random);
         settings.operationLimit = std::uint32_t(uniformInt(random, 0, 1) * 100);
-        const DrawList list = mesh.select(grid, nextView(i / 2), settings);
+        const DrawList list = mesh.select(grid, nextView(random, box, i / 2), settings);
         if (list.positionsChanged) positions.assign(list.positions.begin(), list.positions.end());
         if (list.indicesChanged) indices.assign(list.indices.begin(), list.indices.end());
         samples.resize(list.samples.size(), kNoVertex);
@@ -171,10 +159,10 @@ TEST_P(RoamMeshOver, GivesTheSameForTheSameCallsBitForBit)
 {
     RoamMesh first(model, grid), second(model, grid);
     for (int i = 0; i < viewCount(); ++i) {
-        LodSettings settings = randomSettings();
+        LodSettings settings = randomSettings(random);
         settings.operationLimit = std::uint32_t(uniformInt(random, 0, 1) * 200);
         settings.triangleBudget = std::uint32_t(uniformInt(random, 0, 1) * 1000);
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         const DrawList a = first.select(grid, view, settings), b = second.select(grid, view, settings);
         ASSERT_TRUE(std::equal(a.indices.begin(), a.indices.end(), b.indices.begin(), b.indices.end()));
         ASSERT_TRUE(std::equal(a.samples.begin(), a.samples.end(), b.samples.begin(), b.samples.end()));
@@ -193,7 +181,7 @@ TEST_P(RoamMeshOver, IsNoLargerAfterAFlightThanAFreshOne)
     settings.geomorph = false;
     std::uint64_t trianglesTravelled = 0, trianglesFresh = 0;
     for (int i = 0; i < viewCount(); ++i) {
-        const View view = nextView(i);
+        const View view = nextView(random, box, i);
         const DrawList list = travelled.select(grid, view, settings);
         RoamMesh fresh(model, grid);
         const DrawList other = fresh.select(grid, view, settings);

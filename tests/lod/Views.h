@@ -12,6 +12,7 @@
 
 #include "base/Box.h"
 #include "base/View.h"
+#include "lod/LodAlgorithm.h"
 
 namespace terrain::test {
 
@@ -110,6 +111,23 @@ inline View flightView(const Box& over, int frame, int frames)
     const glm::dvec3 ahead(-half.x * std::sin(t), half.y * std::cos(t), -0.4 * reach);
     const glm::dmat4 camera = glm::lookAt(eye, eye + ahead, glm::dvec3(0.0, 0.0, 1.0));
     return {glm::perspective(0.9, 4.0 / 3.0, 0.01 * reach, 6.0 * reach) * camera, {1024.0, 768.0}};
+}
+
+/// Now a jump, now a step of a flight.
+inline View nextView(std::mt19937& random, const Box& over, int i)
+{
+    return i % 3 == 0 ? randomView(random, over) : flightView(over, i, 40);
+}
+
+inline LodSettings randomSettings(std::mt19937& random)
+{
+    constexpr float errors[] = {0.5f, 1.0f, 2.0f, 6.0f, 40.0f};
+    LodSettings settings;
+    settings.pixelError = errors[uniformInt(random, 0, 4)];
+    settings.cull = uniformInt(random, 0, 1) != 0;
+    settings.geomorph = uniformInt(random, 0, 1) != 0;
+    settings.clockwise = uniformInt(random, 0, 3) == 0;
+    return settings;
 }
 
 }  // namespace terrain::test
