@@ -81,7 +81,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Inventor/lists/SbStringList.h>
 #include <Inventor/SoInput.h>
 #include <Inventor/actions/SoCallbackAction.h>
 #include <Inventor/actions/SoGLRenderAction.h>
@@ -94,6 +93,7 @@
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoTerrain.h>
 
+#include "FindFile.h"
 #include "height/HeightSource.h"
 
 class SoHeightMap::Private {
@@ -137,17 +137,6 @@ SoHeightMap::SoHeightMap() : pimpl(new Private)
 }
 
 SoHeightMap::~SoHeightMap() {}
-
-namespace {
-
-SbString findFile(const SbString & name)
-{
-    SbStringList subdirectories;
-    const SbString found = SoInput::searchForFile(name, SoInput::getDirectories(), subdirectories);
-    return found.getLength() > 0 ? found : name;
-}
-
-}  // namespace
 
 SbBool SoHeightMap::readInstance(SoInput * in, unsigned short flags)
 {

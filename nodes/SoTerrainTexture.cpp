@@ -78,11 +78,11 @@
 #include <Inventor/elements/SoTextureOverrideElement.h>
 #include <Inventor/elements/SoTextureUnitElement.h>
 #include <Inventor/errors/SoDebugError.h>
-#include <Inventor/lists/SbStringList.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoTerrainTextureElement.h>
 
+#include "FindFile.h"
 #include "height/TiledImage.h"
 
 class SoTerrainTexture::Private {
@@ -121,17 +121,6 @@ SoTerrainTexture::SoTerrainTexture() : pimpl(new Private(this))
 }
 
 SoTerrainTexture::~SoTerrainTexture() {}
-
-namespace {
-
-SbString findFile(const SbString & name)
-{
-    SbStringList subdirectories;
-    const SbString found = SoInput::searchForFile(name, SoInput::getDirectories(), subdirectories);
-    return found.getLength() > 0 ? found : name;
-}
-
-}  // namespace
 
 SbBool SoTerrainTexture::readInstance(SoInput * in, unsigned short flags)
 {
