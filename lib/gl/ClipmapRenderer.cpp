@@ -117,7 +117,8 @@ void ClipmapRenderer::sendPatches(const Clipmap::Frame& frame) {
 
 void ClipmapRenderer::setUniforms(GlProgram& program, const Clipmap::Frame& frame, const ClipmapDrawing& drawing) {
     const int levels = layout_.levels();
-    std::array<GLint, 4 * kClipmapShaderLevels> places{}, borders{};
+    std::array<GLint, 2 * kClipmapShaderLevels> places{};
+    std::array<GLint, 4 * kClipmapShaderLevels> borders{};
     std::array<GLfloat, 2 * kClipmapShaderLevels> viewers{};
     constexpr GLint kFar = 1 << 29;
     for (int level = 0; level < levels; ++level) {
@@ -125,7 +126,7 @@ void ClipmapRenderer::setUniforms(GlProgram& program, const Clipmap::Frame& fram
         const ClipRect whole = layout_.place(level, frame.viewer), domain = layout_.domain(level);
         const ClipRect& active = frame.active[l];
         const glm::dvec2 viewer = layout_.viewerAt(level, frame.viewer) - glm::dvec2(whole.low);
-        places[4 * l] = whole.low.x, places[4 * l + 1] = whole.low.y;
+        places[2 * l] = whole.low.x, places[2 * l + 1] = whole.low.y;
         viewers[2 * l] = float(viewer.x), viewers[2 * l + 1] = float(viewer.y);
         const bool isWhole = active == whole;
         for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -134,7 +135,7 @@ void ClipmapRenderer::setUniforms(GlProgram& program, const Clipmap::Frame& fram
             borders[4 * l + 2 + axis] = isWhole || active.high[a] >= domain.high[a] ? kFar : active.high[a];
         }
     }
-    glUniform4iv(program["places"], levels, places.data());
+    glUniform2iv(program["places"], levels, places.data());
     glUniform4iv(program["borders"], levels, borders.data());
     glUniform2fv(program["viewers"], levels, viewers.data());
     glUniform1i(program["mask"], layout_.size());

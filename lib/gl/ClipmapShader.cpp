@@ -15,7 +15,7 @@ uniform sampler2DArray heights;
 uniform int mask, layerMask, coarsest, blendedLevel;
 uniform ivec2 lastUnit, baseUnit;
 uniform float samplesPerUnit, transition, inner, leastBlend;
-uniform ivec4 places[LEVELS];   // first vertex of the level
+uniform ivec2 places[LEVELS];   // first vertex of the level
 uniform vec2 viewers[LEVELS];   // behind the first vertex
 uniform ivec4 borders[LEVELS];  // of what is there, where less than all is
 uniform mat4 clipFromFrame, eyeFromFrame;
@@ -35,7 +35,7 @@ flat out int level;
 void main()
 {
     level = patchLevel;
-    ivec2 v = min(patchRect.xy + corner, patchRect.zw), begin = places[level].xy, behind = v - begin;
+    ivec2 v = min(patchRect.xy + corner, patchRect.zw), begin = places[level], behind = v - begin;
     ivec2 unit = clamp(v << level, ivec2(0), lastUnit);
     vec2 z = texelFetch(heights, ivec3(v & mask, level & layerMask), 0).rg;
 
@@ -72,7 +72,7 @@ void main()
 const char* const kFragmentHead = R"(
 uniform sampler2DArray heights, normals;
 uniform int mask, layerMask;
-uniform ivec4 places[LEVELS];
+uniform ivec2 places[LEVELS];
 uniform sampler2D colourTexture;
 uniform vec4 colourOfAll;
 
@@ -169,7 +169,7 @@ void main()
 {
 #ifdef HOLES
     // A cell that lacks a corner is not there.
-    ivec2 cell = places[level].xy + ivec2(floor(cellPlace));
+    ivec2 cell = places[level] + ivec2(floor(cellPlace));
     int from = level & layerMask;
     if (isnan(texelFetch(heights, ivec3(cell & mask, from), 0).r + texelFetch(heights, ivec3((cell + ivec2(1, 0)) & mask, from), 0).r +
               texelFetch(heights, ivec3((cell + ivec2(0, 1)) & mask, from), 0).r + texelFetch(heights, ivec3((cell + 1) & mask, from), 0).r))
