@@ -288,18 +288,17 @@ void SoTerrainShape::Private::renderMesh(const TerrainFrame & frame)
     const Clock::time_point start = Clock::now();
     if (frame.attributes.hasOverallNormal()) glNormal3fv(frame.attributes.normal(0, 0).getValue());
     SoState * state = frame.action->getState();
-    const bool culls = glIsEnabled(GL_CULL_FACE);
-    const bool cull = !view.report.hasSeams && (culls || hidesUndersides(view, frame.camera, state, frame.data));
-    if (cull != culls) (cull ? glEnable : glDisable)(GL_CULL_FACE);
+    const bool cull = !glIsEnabled(GL_CULL_FACE) && hidesUndersides(view, frame.camera, state, frame.data);
+    if (cull) glEnable(GL_CULL_FACE);
     {
         const TerrainTextureUse::FixedFunction tiled(frame.texture);
         view.renderer.draw();
     }
-    if (cull != culls) (culls ? glEnable : glDisable)(GL_CULL_FACE);
+    if (cull) glDisable(GL_CULL_FACE);
     if (frame.attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
     statistics.drawMilliseconds = millisecondsSince(start);
     statistics.triangles = view.renderer.triangles();
-    statistics.drawCalls = view.renderer.triangles() > 0 ? 1 : 0;
+    statistics.drawCalls = view.renderer.draws();
     statistics.patches = view.renderer.triangles() > 0 ? view.report.patches : 0;
 }
 

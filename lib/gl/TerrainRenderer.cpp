@@ -112,6 +112,7 @@ std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid
         else
             indices_.fill(GL_ELEMENT_ARRAY_BUFFER, list.indices.data(), list.indices.size_bytes());
         indexCount_ = std::uint32_t(list.indices.size());
+        seamCount_ = std::uint32_t(list.seamIndices);
         uploaded_ += list.indices.size_bytes();
     }
     glBindBuffer(GL_ARRAY_BUFFER, 0);
@@ -146,7 +147,14 @@ void TerrainRenderer::draw() const {
         at += 8;
     }
     indices_.current().bind(GL_ELEMENT_ARRAY_BUFFER);
-    glDrawElements(GL_TRIANGLES, GLsizei(indexCount_), GL_UNSIGNED_INT, nullptr);
+    const std::uint32_t faces = indexCount_ - seamCount_;
+    if (faces > 0) glDrawElements(GL_TRIANGLES, GLsizei(faces), GL_UNSIGNED_INT, nullptr);
+    if (seamCount_ > 0) {
+        const GLboolean culls = glIsEnabled(GL_CULL_FACE);
+        if (culls) glDisable(GL_CULL_FACE);
+        glDrawElements(GL_TRIANGLES, GLsizei(seamCount_), GL_UNSIGNED_INT, offset(std::size_t(faces) * sizeof(std::uint32_t)));
+        if (culls) glEnable(GL_CULL_FACE);
+    }
     glBindBuffer(GL_ARRAY_BUFFER, 0);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
     glPopClientAttrib();
@@ -160,7 +168,7 @@ std::vector<GLuint> TerrainRenderer::release() {
     for (GlBuffer& buffer : positions_.all()) take(buffer);
     for (GlBuffer& buffer : indices_.all()) take(buffer);
     take(attributes_);
-    indexCount_ = 0;
+    indexCount_ = seamCount_ = 0;
     return names;
 }
 

@@ -50,10 +50,12 @@ public:
     /// Of the bytes of the last upload, those that came with new vertices: their positions, and all attributes that were sent. The
     /// rest is positions of vertices that were there, and indices.
     std::size_t newVertexBytes() const { return newVertexBytes_; }
-    /// One draw call. Client array state is restored; the current colour and normal are undefined after it where the format has
-    /// them.
+    /// One draw call, and another one for seams. Client array state is restored; the current colour and normal are undefined after
+    /// it where the format has them.
     void draw() const;
     std::uint32_t triangles() const { return indexCount_ / 3; }
+    /// Calls that draw() makes.
+    std::uint32_t draws() const { return (indexCount_ > seamCount_ ? 1u : 0u) + (seamCount_ > 0 ? 1u : 0u); }
     std::size_t bufferBytes() const { return positions_.bytes() + attributes_.bytes() + indices_.bytes(); }
     std::size_t memoryBytes() const { return mirror_.capacity(); }
     /// Names of all buffers, which are the caller's to delete; forgets them.
@@ -71,7 +73,7 @@ private:
     VertexFormat format_;
     std::uint64_t version_ = 0;
     std::vector<std::uint8_t> mirror_;  ///< attributes of a pool of vertices
-    std::uint32_t indexCount_ = 0;
+    std::uint32_t indexCount_ = 0, seamCount_ = 0;
     std::size_t uploaded_ = 0, newVertexBytes_ = 0;
 };
 

@@ -101,12 +101,12 @@ DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const Lod
         }
         report_ = frame.report;
         report_.triangles = std::uint32_t(indexCount_ / 3);
-        report_.hasSeams = true;
     }
     list.positions = positions_;
     list.samples = samples_;
     list.places = places_;
     list.indices = {indices_.data(), indexCount_};
+    list.seamIndices = indexCount_ - firstSeam_;
     list.newVertices = newVertices_;
     list.report = report_;
     return list;
@@ -326,12 +326,15 @@ void ClipmapMesh::emit(const ClipmapPatches& patches) {
         }
     if (most > indices_.size()) indices_.resize(most + most / 8);
     indexCount_ = 0;
+    firstSeam_ = 0;
     for (int footprint = 0; footprint < kFootprints; ++footprint)
         for (const ClipmapPatch& patch : patches.by[footprint]) {
             if (Footprint(footprint) == Footprint::Seam)
                 emitSeam(patch);
             else
                 emitPatch(patch);
+            // Seams come last.
+            if (Footprint(footprint) != Footprint::Seam) firstSeam_ = indexCount_;
         }
 }
 

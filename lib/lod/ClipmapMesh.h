@@ -128,7 +128,7 @@ private:
     std::vector<glm::vec2> places_;
     std::vector<float> scratch_, shares_;
     std::vector<glm::vec3> points_;
-    std::size_t indexCount_ = 0;
+    std::size_t indexCount_ = 0, firstSeam_ = 0;
     SelectionReport report_;
 };
 

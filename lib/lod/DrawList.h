@@ -19,17 +19,19 @@ struct SelectionReport {
     std::uint32_t merges = 0;
     std::uint32_t patches = 1;  ///< parts that are each drawn at one level: tiles, blocks
     std::uint32_t levels = 1;   ///< of detail that are drawn, of a clipmap
-    bool hasSeams = false;      ///< triangles without area close what rounding leaves open: GL must not leave out any by its facing
-    bool converged = true;     ///< false: the limit on operations was met, the next call goes on
-    float errorPixels = 0.0f;  ///< bound on the screen error of every sample in view; infinite when it could not be bounded
+    bool converged = true;      ///< false: the limit on operations was met, the next call goes on
+    float errorPixels = 0.0f;   ///< bound on the screen error of every sample in view; infinite when it could not be bounded
 };
 
 /// Triangles over a pool of vertices. The spans belong to the algorithm and are valid until its next selection.
 struct DrawList {
-    std::span<const glm::vec3> positions;        ///< local coordinates by vertex; free places hold stale values
-    std::span<const std::uint32_t> samples;      ///< row * columns + column by vertex, of the nearest where there are `places`
-    std::span<const glm::vec2> places;           ///< column and row by vertex; empty when all vertices are samples
-    std::span<const std::uint32_t> indices;      ///< three a triangle, counter-clockwise in the grid's (column, row) plane
+    std::span<const glm::vec3> positions;    ///< local coordinates by vertex; free places hold stale values
+    std::span<const std::uint32_t> samples;  ///< row * columns + column by vertex, of the nearest where there are `places`
+    std::span<const glm::vec2> places;       ///< column and row by vertex; empty when all vertices are samples
+    std::span<const std::uint32_t> indices;  ///< three a triangle, counter-clockwise in the grid's (column, row) plane
+    /// How many of the indices, at their end, are of triangles without area that close what rounding leaves open. GL must draw them
+    /// whichever way they face.
+    std::size_t seamIndices = 0;
     std::span<const std::uint32_t> newVertices;  ///< vertices that stand for another sample than at the last selection
     bool wholeGrid = false;                      ///< vertex i is sample i: positions, samples and newVertices are empty
     bool positionsChanged = false;               ///< since the last selection
