@@ -6,7 +6,6 @@
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/elements/SoGLShaderProgramElement.h>
 #include <Inventor/elements/SoMultiTextureEnabledElement.h>
-#include <Inventor/elements/SoMultiTextureImageElement.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoTerrainStatistics.h>
@@ -87,6 +86,24 @@ bool hasClipPlanes()
     return false;
 }
 
+/// What GL does with the texture of unit 0.
+terrain::ClipmapShading::Texture textureModel()
+{
+    using Shading = terrain::ClipmapShading;
+    GLint active = 0, mode = 0, alphaBits = 0;
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
+    glActiveTexture(GL_TEXTURE0);
+    glGetTexEnviv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, &mode);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_ALPHA_SIZE, &alphaBits);
+    glActiveTexture(GLenum(active));
+    switch (mode) {
+    case GL_DECAL: return Shading::Decal;
+    case GL_BLEND: return Shading::Blend;
+    case GL_REPLACE: return alphaBits > 0 ? Shading::ReplaceAlpha : Shading::Replace;
+    default: return Shading::Modulate;
+    }
+}
+
 /// The program that GL's state asks for.
 terrain::ClipmapShading shadingOf(const TerrainFrame & frame)
 {
@@ -107,20 +124,7 @@ terrain::ClipmapShading shadingOf(const TerrainFrame & frame)
     if (frame.texture.clipmap) {
         shading.texture = Shading::TextureClipmapModulate;
     } else if (SoMultiTextureEnabledElement::get(state, 0)) {
-        SbVec2s size;
-        int components = 0;
-        SoMultiTextureImageElement::Wrap wrapS, wrapT;
-        SoMultiTextureImageElement::Model model;
-        SbColor blend;
-        const bool hasImage = SoMultiTextureImageElement::get(state, 0, size, components, wrapS, wrapT, model, blend) != NULL;
-        switch (model) {
-        case SoMultiTextureImageElement::DECAL: shading.texture = Shading::Decal; break;
-        case SoMultiTextureImageElement::BLEND: shading.texture = Shading::Blend; break;
-        case SoMultiTextureImageElement::REPLACE:
-            shading.texture = hasImage && components % 2 == 0 ? Shading::ReplaceAlpha : Shading::Replace;
-            break;
-        default: shading.texture = Shading::Modulate; break;
-        }
+        shading.texture = textureModel();
     }
     shading.holes = frame.data.model.boxes->hasHoles();
     return shading;

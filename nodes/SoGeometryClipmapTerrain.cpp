@@ -4,7 +4,7 @@
 
   The method is geometry clipmaps: Losasso and Hoppe, "Geometry Clipmaps: Terrain Rendering Using Nested Regular Grids", 2004; on the GPU as in
   Asirvatham and Hoppe, "Terrain Rendering Using GPU-Based Geometry Clipmaps", 2005. A level is clipmapSize x clipmapSize vertices, kept as a
-  texture. When the viewer moves, only what is newly exposed is sent, and all levels are drawn in at most four calls, whatever they show. So
+  texture. When the viewer moves, only what is newly exposed is sent, and all levels are drawn in at most four calls (in that many for each level with storage MEMORY_FREE). So
   work and memory per frame depend on clipmapSize alone, not on the size of the map nor on how rough it is: that is what to take this node for. For the same error it
   takes more triangles than SoROAMTerrain or SoChunkedLoDTerrain, because it chooses detail by distance.
 

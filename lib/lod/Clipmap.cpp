@@ -144,6 +144,7 @@ float Clipmap::boundError(const SampleGrid& grid, const BoxPyramid& boxes, const
     const int last = layout_.levels() - 1;
     for (int level = last; level >= 0; --level) {
         const ClipRect& region = active[std::size_t(level)];
+        if (region.isEmpty() && level == last) return kInfinite;
         if (region.isEmpty()) break;
         const int source = layout_.sourceLevel(level);
         // Levels of detail pass through all samples, whatever share of each is drawn.

@@ -20,7 +20,8 @@ ClipmapLayout::ClipmapLayout(int columns, int rows, const ClipmapShape& shape)
     while (detailLevels_ > 0 && (std::int64_t(std::max(columns, rows)) << detailLevels_) > (1 << 30)) --detailLevels_;
     last_ = glm::ivec2(columns - 1, rows - 1) << detailLevels_;
     const std::int64_t reach = 2 * blockSize() - 2, longest = std::max(last_.x, last_.y);
-    int covering = 1;
+    // Levels of detail are made from the samples themselves, which are a level however small the grid is.
+    int covering = detailLevels_ + 1;
     while ((reach << (covering - 1)) < longest) ++covering;
     // Levels of samples count from the finest sample on: those finer come on top.
     levels_ = levels_ > 0 ? std::min(levels_ + detailLevels_, covering) : covering;

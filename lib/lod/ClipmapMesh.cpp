@@ -66,7 +66,8 @@ void ClipmapMesh::start(const ClipmapLayout& layout) {
 }
 
 void ClipmapMesh::fitSize(const SampleGrid& grid, const View& view) {
-    const int size = smallestClipmap(grid, *boxes_, errorsUsed_.get(), view, *anySize_, options_, view_ ? layout_.size() : 0);
+    const int size = smallestClipmap(grid, *boxes_, errorsUsed_.get(), view, *anySize_, options_, isFitted_ ? layout_.size() : 0);
+    isFitted_ = errorsUsed_ != nullptr;
     if (size != layout_.size()) start(ClipmapLayout(grid.columns(), grid.rows(), withSize(*anySize_, size)));
 }
 

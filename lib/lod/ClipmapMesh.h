@@ -129,6 +129,7 @@ private:
     std::vector<float> scratch_, shares_;
     std::vector<glm::vec3> points_;
     std::size_t indexCount_ = 0, firstSeam_ = 0;
+    bool isFitted_ = false;  ///< the size is that of an earlier view, by errors
     SelectionReport report_;
 };
 

@@ -18,7 +18,7 @@ struct SoTerrainStatistics {
     double errorPixels = 0.0;   ///< bound on the screen error of every sample in view; at most pixelError when converged without a budget
     std::size_t memoryBytes = 0;    ///< main memory held beyond Coin's own arrays: hierarchy, meshes, tiles of a texture
     std::size_t bufferBytes = 0;    ///< GL buffers, and textures of an SoTerrainTexture, all contexts
-    std::size_t uploadedBytes = 0;  ///< sent to GL buffers and textures in this frame
+    std::size_t uploadedBytes = 0;  ///< sent to GL buffers and textures in this frame, but for a list of patches
     std::size_t newVertexBytes = 0; ///< of those, vertices that were not in GL before: positions, normals and so on; the rest of a mesh is indices and positions that slide
     double buildMilliseconds = 0.0;   ///< preparing the height data; 0 but in the frame that did it
     double selectMilliseconds = 0.0;  ///< choosing the mesh

@@ -191,6 +191,15 @@ TEST(ClipmapShape, TakesTheNearestSizeThatThereIs) {
         EXPECT_EQ(ClipmapShape::validSize(wanted), size) << wanted;
 }
 
+TEST(ClipmapLayout, HasALevelOfSamplesHoweverMuchDetailCoversASmallGrid) {
+    for (const int side : {2, 3, 17, 64, 65, 300})
+        for (const int detail : {0, 1, 3, 8})
+            for (const int levels : {0, 1, 5}) {
+                const ClipmapLayout layout(side, side, {255, levels, detail, 0});
+                EXPECT_GE(layout.sourceLevel(layout.levels() - 1), 0) << side << ", detail " << detail << ", levels " << levels;
+            }
+}
+
 TEST(ClipmapLayout, DrawsInTheFootprintsOfThe2005Article) {
     // Sect. 3.1: twelve blocks, four strips and a trim of one L for each level; four blocks and a second L more in the middle.
     ClipmapShape shape;

@@ -13,6 +13,7 @@
 #include <Inventor/nodes/SoMaterialBinding.h>
 #include <Inventor/nodes/SoOrthographicCamera.h>
 #include <Inventor/nodes/SoShaderProgram.h>
+#include <Inventor/nodes/SoTexture2.h>
 
 #include <SoTerrain/SoGeometryClipmapTerrain.h>
 
@@ -300,4 +301,62 @@ TEST(Clipmaps, ReportNoBoundWhereTooFewLevelsLeaveGroundOut) {
     const Image part = stage.render(root.get());
     EXPECT_LT(coveredPixels(part), coveredPixels(all));
     EXPECT_FALSE(std::isfinite(clipmapIn(root)->getStatistics().errorPixels));
+}
+
+TEST(Clipmaps, ReportNoBoundWhereTheCoarsestLevelIsStillMissing) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 50.0));
+    Stage stage;
+    for (const auto implementation : {SoGeometryClipmapTerrain::GPU, SoGeometryClipmapTerrain::CPU}) {
+        const auto root = clipmapOver(surface, 15, unlitTexture, cameraAt({20.0f, 20.0f, 60.0f}, {60.0f, 60.0f, 10.0f}, 0.5f, 600.0f));
+        clipmapIn(root)->implementation = implementation;
+        clipmapIn(root)->levels = 2;
+        clipmapIn(root)->updateBudget = 1;
+        stage.render(root.get());
+        root->replaceChild(0, cameraAt({220.0f, 200.0f, 60.0f}, {150.0f, 150.0f, 10.0f}, 0.5f, 600.0f));
+        stage.render(root.get());
+        EXPECT_FALSE(std::isfinite(clipmapIn(root)->getStatistics().errorPixels));
+    }
+}
+
+TEST(Clipmaps, TakeTheSameSizeOnTheGpuAndOnTheCpu) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 50.0));
+    Stage stage;
+    for (int frame = 0; frame < 6; ++frame) {
+        SoTerrainStatistics statistics[2];
+        for (const int i : {0, 1}) {
+            const auto root = clipmapOver(surface, 0, unlitTexture, flight(frame));
+            clipmapIn(root)->pixelError = 6.0f;
+            clipmapIn(root)->implementation = i == 0 ? SoGeometryClipmapTerrain::GPU : SoGeometryClipmapTerrain::CPU;
+            stage.render(root.get());
+            statistics[i] = clipmapIn(root)->getStatistics();
+        }
+        EXPECT_EQ(statistics[0].errorPixels, statistics[1].errorPixels) << "frame " << frame;
+        EXPECT_EQ(statistics[0].levels, statistics[1].levels) << "frame " << frame;
+    }
+}
+
+TEST(Clipmaps, TakeTexturesAsTheirModelsSay) {
+    const Surface surface = surfaceOf(fractalMap(129, 129, 25.0));
+    Stage stage;
+    for (const auto model : {SoTexture2::MODULATE, SoTexture2::DECAL, SoTexture2::BLEND, SoTexture2::REPLACE})
+        for (const int components : {1, 2, 3, 4}) {
+            // GL leaves open what a decal without three colours does.
+            if (model == SoTexture2::DECAL && components < 3) continue;
+            const auto dress = [&](SoSeparator* group) {
+                std::vector<unsigned char> pixels;
+                for (int i = 0; i < 16 * 16 * components; ++i) pixels.push_back(static_cast<unsigned char>(40 + (i * 37) % 200));
+                auto* texture = new SoTexture2;
+                texture->image.setValue(SbVec2s(16, 16), components, pixels.data());
+                texture->model = model;
+                texture->blendColor = SbColor(0.9f, 0.2f, 0.4f);
+                group->addChild(texture);
+            };
+            std::vector<Image> pictures;
+            for (const auto implementation : {SoGeometryClipmapTerrain::CPU, SoGeometryClipmapTerrain::GPU}) {
+                const auto root = clipmapOver(surface, 255, dress);
+                clipmapIn(root)->implementation = implementation;
+                pictures.push_back(stage.render(root.get()));
+            }
+            expectAlike(pictures[0], pictures[1], 4.0, "model " + std::to_string(model) + ", components " + std::to_string(components));
+        }
 }
