@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/Result.h"
 #include "height/HeightMap.h"
@@ -15,6 +16,10 @@ bool hasImageReader();
 
 /// Nothing when OpenImageIO recognises the file, else its reason.
 std::optional<std::string> whyNotAnImage(const std::string& path);
+
+/// Whether a file of OpenImageIO's format of that name goes on to its end, as far as it has one that can be looked for: some decoders
+/// fill in what is missing, or leak memory.
+bool imageEnds(const std::string& path, std::string_view format);
 
 /// Reads one channel of an image: `options.channel`, or the first one of a grey image with or without alpha.
 ///

@@ -8,6 +8,8 @@
 
 #ifdef HAVE_OPENIMAGEIO
 #include <OpenImageIO/imagecache.h>
+
+#include "height/ImageSource.h"
 #endif
 
 namespace terrain {
@@ -54,6 +56,10 @@ Result<std::shared_ptr<const TiledImage>> TiledImage::open(const std::string& pa
     cache.images->attribute("unassociatedalpha", 1);
     OIIO::ImageSpec spec;
     if (!cache.images->get_imagespec(cache.name, spec)) return Error{path, "an image that OpenImageIO reads", cache.reason()};
+    const char* format = nullptr;
+    if (cache.images->get_image_info(cache.name, 0, 0, OIIO::ustring("fileformat"), OIIO::TypeDesc::STRING, &format) &&
+        !imageEnds(path, format))
+        return Error{path, "a complete image", "a file that ends too early"};
     if (spec.deep || spec.depth > 1) return Error{path, "a flat image", spec.deep ? "a deep image" : "a volume"};
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
         return Error{path, "an image with texels", sizeText(spec.width, spec.height)};

@@ -348,7 +348,7 @@ TEST_F(TextureClipmaps, GiveGlStateBack) {
 }
 
 TEST_F(TextureClipmaps, OfADamagedFileSaySo) {
-    const std::string path = (folder_ / "damaged.png").string();
+    const std::string path = (folder_ / "damaged.ppm").string();
     writeLevels(path, {texelsOf(512, 512, 3, placeTexel)}, 0);
     std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
     const auto image = TiledImage::open(path, 16);
