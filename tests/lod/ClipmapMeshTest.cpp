@@ -53,7 +53,8 @@ struct Scene {
         : grid(terrain.grid()), boxes(std::make_shared<BoxPyramid>(grid)), layout(grid.columns(), grid.rows(), wanted),
           errors(std::make_shared<ClipmapErrors>(grid, layout.levels() - layout.detailLevels())),
           detail(std::make_shared<SynthesisedDetail>(grid, DetailShape{layout.detailLevels(), amplitude, 7})),
-          mesh(layout, options, boxes, [this] { return errors; }, detail) {}
+          mesh(
+              layout, options, boxes, [this] { return errors; }, detail) {}
     Scene(const Scene&) = delete;
 
     std::vector<UnitTriangle> triangles(const DrawList& list) const {
@@ -117,7 +118,8 @@ bool isSolid(const Scene& scene, glm::ivec2 unit) {
         if (region.isEmpty() || !region.contains(cell) || !region.contains(cell + 1)) continue;
         const int samples = std::max(level, scene.layout.detailLevels());
         for (int i = 0; i < 4; ++i) {
-            const glm::ivec2 corner = scene.layout.unitAt((unit >> samples) + glm::ivec2(i % 2, i / 2), samples) >> scene.layout.detailLevels();
+            const glm::ivec2 corner =
+                scene.layout.unitAt((unit >> samples) + glm::ivec2(i % 2, i / 2), samples) >> scene.layout.detailLevels();
             if (scene.grid.isHole(corner.x, corner.y)) return false;
         }
         return true;
@@ -160,7 +162,8 @@ std::string crackProblem(const Scene& scene, const DrawList& list, const std::ve
         if (t.twiceArea != 0) continue;
         const glm::dvec3 a(list.positions[t.vertex[0]]), m(list.positions[t.vertex[1]]), b(list.positions[t.vertex[2]]);
         const double part = glm::length(glm::dvec2(t.at[1] - t.at[0])) / glm::length(glm::dvec2(t.at[2] - t.at[0]));
-        if (glm::length(a + (b - a) * part - m) > 1e-6 * size + 1e-6 * glm::length(b - a)) return "off the coarser edge: " + text(t.at[1]);
+        if (glm::length(a + (b - a) * part - m) > 1e-6 * size + 1e-6 * glm::length(b - a))
+            return "off the coarser edge: " + text(t.at[1]);
         seams.insert({key(t.at[0]), key(t.at[1]), key(t.at[2])});
     }
     if (scene.boxes->hasHoles()) return {};
@@ -272,7 +275,8 @@ std::vector<Case> cases() {
             if (size == 63 && terrain.map.columns < 200) continue;
             result.push_back({terrain, {size, 0, 0, 0}});
         }
-    for (const Terrain& terrain : {fractal(33, 33), fractal(40, 23), spike(33), withDisc(40, 33), withSingleHole(33), fractal(2, 2)})
+    for (const Terrain& terrain :
+         {fractal(33, 33), fractal(40, 23), spike(33), withDisc(40, 33), withSingleHole(33), fractal(2, 2)})
         for (const int detail : {1, 3}) result.push_back({terrain, {15, 0, detail, 0}});
     result.push_back({fractal(100, 77), {31, 0, 2, 9}});
     return result;
@@ -347,7 +351,9 @@ TEST_P(ClipmapMeshOver, HasNoCracksWhereUpdatesFellBehind) {
         if (!scene.mesh.clipmap().valid().back().contains(scene.layout.domain(last))) continue;
         ASSERT_EQ("", problemOf(scene, list, false)) << "frame " << i;
     }
-    if (scene.layout.levels() > 2) {
+    // Levels that hold all of the grid have nothing to follow.
+    const ClipRect all = scene.layout.domain(0);
+    if (scene.layout.levels() > 2 && std::max(all.columns(), all.rows()) > scene.layout.size()) {
         EXPECT_GT(cropped, 5);
     }
 }
@@ -419,7 +425,7 @@ TEST_P(ClipmapMeshOver, GivesWhatAFreshMeshWouldGive) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Terrains, ClipmapMeshOver, testing::ValuesIn(cases()), 
+INSTANTIATE_TEST_SUITE_P(Terrains, ClipmapMeshOver, testing::ValuesIn(cases()),
                          [](const testing::TestParamInfo<Case>& info) { return nameOf(info.param); });
 
 /// Looks for cracks over one place after the other, with all levels.
@@ -475,7 +481,8 @@ TEST(ClipmapMesh, DrawsEveryVertexWhereTheSelectionSays) {
         LodSettings settings;
         int blending = 0;
         for (int i = 0; i < 12; ++i) {
-            const DrawList list = scene.mesh.select(scene.grid, lookingDown(scene.grid, terrain.box(), {30.0 + 5.3 * i, 90.0 - 4.1 * i}, 2.0), settings);
+            const DrawList list = scene.mesh.select(
+                scene.grid, lookingDown(scene.grid, terrain.box(), {30.0 + 5.3 * i, 90.0 - 4.1 * i}, 2.0), settings);
             std::set<std::uint32_t> drawn(list.indices.begin(), list.indices.end());
             const Clipmap& clipmap = scene.mesh.clipmap();
             for (int level = scene.layout.detailLevels(); level < scene.layout.levels(); ++level) {
@@ -537,7 +544,8 @@ TEST(ClipmapMesh, DrawsSynthesisedHeightsAroundTheViewer) {
         const glm::ivec2 unit(glm::round(place * 4.0));
         const int level = active[0].contains(unit) ? 0 : 1;
         // Where two levels meet both have a vertex.
-        if (!active[std::size_t(level)].shrunk(1).contains(unit >> level) || (level == 1 && coarserRect(active[0]).shrunk(-1).contains(unit >> 1)))
+        if (!active[std::size_t(level)].shrunk(1).contains(unit >> level) ||
+            (level == 1 && coarserRect(active[0]).shrunk(-1).contains(unit >> 1)))
             continue;
         const float share = scene.mesh.clipmap().blend(level, unit >> level);
         const double fine = surfaces[std::size_t(2 - level)].height(scene.grid, place.x, place.y);
@@ -565,7 +573,8 @@ void expectAllThatStandsOut(const Terrain& terrain, const ClipmapShape& shape, f
         const glm::dvec3 eye = middle + half * glm::dvec3(uniform(random, -0.7, 0.7), uniform(random, -0.7, 0.7), 0.0);
         const double turn = uniform(random, 0.0, 6.3), pitch = uniform(random, 0.02, 0.15);
         const glm::dvec3 at(eye.x, eye.y, double(terrain.box().lowest().z) + height);
-        const glm::dmat4 camera = glm::lookAt(at, at + glm::dvec3(std::cos(turn), std::sin(turn), pitch), glm::dvec3(0.0, 0.0, 1.0));
+        const glm::dmat4 camera =
+            glm::lookAt(at, at + glm::dvec3(std::cos(turn), std::sin(turn), pitch), glm::dvec3(0.0, 0.0, 1.0));
         const View view{glm::perspective(0.1, 4.0 / 3.0, 0.1, 1000.0) * camera, {1024.0, 768.0}};
         LodSettings settings;
         settings.cull = false;
@@ -579,7 +588,8 @@ void expectAllThatStandsOut(const Terrain& terrain, const ClipmapShape& shape, f
 }
 
 TEST(ClipmapMesh, DrawsWhatRisesInATransitionOnly) {
-    Terrain spikes{"Spikes", mapOf(385, 385, [](int column, int row) { return column % 16 == 0 && row % 16 == 0 ? 30.0f : 0.0f; }), {}};
+    Terrain spikes{
+        "Spikes", mapOf(385, 385, [](int column, int row) { return column % 16 == 0 && row % 16 == 0 ? 30.0f : 0.0f; }), {}};
     expectAllThatStandsOut(spikes, {15, 0, 0, 0}, 0.0f, 1.0);
 }
 
@@ -597,7 +607,8 @@ double largestJump(const Terrain& terrain, const ClipmapShape& shape, double cel
     std::vector<double> before, now;
     double largest = 0.0;
     for (double flown = 0.0; flown < cells; flown += cellsAFrame) {
-        const glm::dvec3 eye(double(box.centre.x) - 0.3 * double(box.half.x) + 1.25 * flown, double(box.centre.y), double(box.highest().z) + 5.0);
+        const glm::dvec3 eye(double(box.centre.x) - 0.3 * double(box.half.x) + 1.25 * flown, double(box.centre.y),
+                             double(box.highest().z) + 5.0);
         const glm::dmat4 camera = glm::lookAt(eye, eye + glm::dvec3(1.0, 0.02, -0.35), glm::dvec3(0.0, 0.0, 1.0));
         const View view{glm::perspective(0.8, 4.0 / 3.0, 0.5, 1000.0) * camera, {1024.0, 768.0}};
         const DrawList list = scene.mesh.select(scene.grid, view, {});
@@ -605,7 +616,8 @@ double largestJump(const Terrain& terrain, const ClipmapShape& shape, double cel
         forSamples(scene, list, [&](int column, int row, const glm::dvec3& p) { now[scene.grid.index(column, row)] = p.z; });
         for (std::size_t i = 0; i < before.size(); ++i) {
             if (std::isnan(now[i]) || std::isnan(before[i]) || now[i] == before[i]) continue;
-            glm::dvec3 p(scene.grid.position(int(i % std::size_t(scene.grid.columns())), int(i / std::size_t(scene.grid.columns()))));
+            glm::dvec3 p(
+                scene.grid.position(int(i % std::size_t(scene.grid.columns())), int(i / std::size_t(scene.grid.columns()))));
             if (!project(view, p).inView) continue;
             p.z = now[i];
             const glm::dvec2 there = project(view, p).pixel;
@@ -621,7 +633,8 @@ TEST(ClipmapMesh, SlidesFromLevelToLevelWithoutAJump) {
     const Terrain terrain = fractal(257, 257);
     for (const int size : {31, 63}) {
         // Two cells of the finest level at once pass its whole transition where that is one cell wide.
-        const double atOnce = largestJump(terrain, {size, 0, 0, 1}, 2.0, 40.0), smooth = largestJump(terrain, {size, 0, 0, 0}, 0.1, 20.0);
+        const double atOnce = largestJump(terrain, {size, 0, 0, 1}, 2.0, 40.0),
+                     smooth = largestJump(terrain, {size, 0, 0, 0}, 0.1, 20.0);
         const int width = ClipmapLayout(257, 257, {size, 0, 0, 0}).transitionWidth();
         EXPECT_GT(atOnce, 1.0) << "or there is nothing to see";
         EXPECT_LE(smooth, 1.5 * 0.1 / width * atOnce) << size;
@@ -633,7 +646,8 @@ TEST(ClipmapMesh, OfNoGivenSizeTakesTheOneThatEachViewNeeds) {
     const SampleGrid grid = terrain.grid();
     const auto boxes = std::make_shared<BoxPyramid>(grid);
     const auto errors = std::make_shared<const ClipmapErrors>(grid, ClipmapLayout(300, 300, {15, 0, 0, 0}).levels());
-    ClipmapMesh any(300, 300, {0, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
+    ClipmapMesh any(
+        300, 300, {0, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
     std::set<int> sizes;
     std::vector<std::uint32_t> samples;
     for (int i = 0; i < 12; ++i) {
@@ -644,7 +658,8 @@ TEST(ClipmapMesh, OfNoGivenSizeTakesTheOneThatEachViewNeeds) {
         const int size = any.clipmap().layout().size();
         EXPECT_TRUE(list.report.errorPixels <= settings.pixelError || size == ClipmapShape::kLargest);
         sizes.insert(size);
-        ClipmapMesh fixed(300, 300, {size, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
+        ClipmapMesh fixed(
+            300, 300, {size, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
         const DrawList same = fixed.select(grid, view, settings);
         ASSERT_EQ(list.indices.size(), same.indices.size());
         samples.resize(list.samples.size(), kNoVertex);
@@ -662,7 +677,8 @@ TEST(ClipmapMesh, TakesErrorsWhenTheyAreThere) {
     const SampleGrid grid = terrain.grid();
     const ClipmapLayout layout(129, 129, {31, 0, 0, 0});
     std::shared_ptr<const ClipmapErrors> errors;
-    ClipmapMesh mesh(layout, {}, std::make_shared<BoxPyramid>(grid), [&] { return errors; }, nullptr);
+    ClipmapMesh mesh(
+        layout, {}, std::make_shared<BoxPyramid>(grid), [&] { return errors; }, nullptr);
     ClipmapMesh without(layout, {}, std::make_shared<BoxPyramid>(grid), {}, nullptr);
     const View view = flightView(terrain.box(), 1, 10);
     EXPECT_TRUE(std::isinf(mesh.select(grid, view, {}).report.errorPixels));
