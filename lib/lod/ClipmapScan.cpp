@@ -7,19 +7,12 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/VectorClones.h"
 #include "lod/ClipmapSurface.h"
 
 namespace terrain {
 
 namespace {
-
-// The innermost loops. They are compiled for wider vectors too, and the processor's kind decides when the program starts.
-// Sanitizers can't live with functions that are chosen before they are set up.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define SOTERRAIN_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define SOTERRAIN_VECTOR_CLONES
-#endif
 
 struct Ramp {
     const float *base, *slope, *fold;

@@ -5,17 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "base/VectorClones.h"
+
 namespace terrain {
 
 namespace {
-
-// The innermost loop. It is compiled for wider vectors too, and the processor's kind decides when the program starts. Sanitizers
-// can't live with functions that are chosen before they are set up.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define SOTERRAIN_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define SOTERRAIN_VECTOR_CLONES
-#endif
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kWide = 16;

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/VectorClones.h"
 #include "lod/ErrorHierarchy.h"
 
 namespace terrain {
@@ -21,15 +22,7 @@ void growTo(std::vector<T>& items, std::size_t size) {
     items.resize(size);
 }
 
-// The innermost loops of a selection. They are compiled for wider vectors too, and the processor's kind decides when the program
-// starts; without contraction the results are the same. Sanitizers can't live with functions that are chosen before they are set
-// up.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define SOTERRAIN_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define SOTERRAIN_VECTOR_CLONES
-#endif
-
+// Without contraction what the wider clones compute is the same.
 constexpr std::size_t kLanes = RoamBounds::kBlock;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Priority of what is in view though nothing of its error shows: 0 means outside.
