@@ -164,14 +164,10 @@ std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, co
 {
     const terrain::SampleGrid & grid = frame.data.grid;
     const Clock::time_point start = Clock::now();
-    terrain::Clipmap::Frame chosen;
-    if (options.freeze && frozen_) {
-        chosen = *frozen_;
-        chosen.updates = {};
-    } else {
-        chosen = clipmap_.select(grid, *frame.data.model.boxes, errors, frame.camera, options.settings);
-        frozen_ = chosen;
-    }
+    const terrain::Clipmap::Frame & chosen = options.freeze && hasFrame_
+                                                 ? clipmap_.again()
+                                                 : clipmap_.select(grid, *frame.data.model.boxes, errors, frame.camera, options.settings);
+    hasFrame_ = true;
     statistics.selectMilliseconds = millisecondsSince(start);
 
     const Clock::time_point selected = Clock::now();
@@ -197,7 +193,7 @@ std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, co
     const auto drawn = renderer_.draw(chosen, source, drawing);
     if (!drawn) {
         clipmap_.forget();
-        frozen_.reset();
+        hasFrame_ = false;
         return drawn.error();
     }
     statistics.drawMilliseconds = millisecondsSince(selected);

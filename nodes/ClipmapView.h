@@ -46,7 +46,7 @@ private:
     std::shared_ptr<const terrain::SynthesisedDetail> detail_;
     terrain::Clipmap clipmap_;
     terrain::ClipmapRenderer renderer_;
-    std::optional<terrain::Clipmap::Frame> frozen_;
+    bool hasFrame_ = false;
 };
 
 /// Why the state can't be drawn by vertex textures; empty where it can. `isAffine`: StateAttributes::hasAffineTextureCoordinates().

@@ -228,15 +228,9 @@ SoGeometryClipmapTerrain::~SoGeometryClipmapTerrain() {}
 void SoGeometryClipmapTerrain::notify(SoNotList * list)
 {
     // Vertex arrays are made for these.
-    const SoField * field = list->getLastField();
-    for (const SoField * changes : {static_cast<const SoField *>(&this->clipmapSize), static_cast<const SoField *>(&this->levels),
-                                    static_cast<const SoField *>(&this->transitionWidth), static_cast<const SoField *>(&this->detailLevels),
-                                    static_cast<const SoField *>(&this->detailAmplitude), static_cast<const SoField *>(&this->detailSeed),
-                                    static_cast<const SoField *>(&this->activeLevels), static_cast<const SoField *>(&this->updateBudget)})
-        if (field == changes) {
-            discardMeshes();
-            break;
-        }
+    const SoField * const shaping[] = {&this->clipmapSize, &this->levels, &this->transitionWidth, &this->updateBudget, &this->activeLevels,
+                                       &this->detailLevels, &this->detailAmplitude, &this->detailSeed};
+    if (std::find(std::begin(shaping), std::end(shaping), list->getLastField()) != std::end(shaping)) discardMeshes();
     inherited::notify(list);
 }
 

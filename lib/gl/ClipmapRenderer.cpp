@@ -207,15 +207,14 @@ Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame
     }
     GlProgram& program = programs_[drawing.shading];
     Drawn result;
-    const auto update = [&](const ClipmapUpdates::Update& rect) -> std::optional<Error> {
-        const auto sent = textures_.update(rect, source);
+    const auto update = [&](std::span<const ClipmapUpdates::Update> updates) -> std::optional<Error> {
+        const auto sent = textures_.update(updates, source);
         if (!sent) return sent.error();
         result.uploadedBytes += sent.value();
         return std::nullopt;
     };
     if (!memoryFree_)
-        for (const ClipmapUpdates::Update& rect : frame.updates)
-            if (auto problem = update(rect)) return *problem;
+        if (auto problem = update(frame.updates)) return *problem;
 
     GLint programBefore = 0, arrayBefore = 0, bufferBefore = 0, faceBefore = 0;
     glGetIntegerv(GL_CURRENT_PROGRAM, &programBefore);
@@ -247,7 +246,8 @@ Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame
         for (int level = layout_.levels() - 1; level >= frame.finest && !problem; --level) {
             const ClipRect& valid = source.valid[std::size_t(level)];
             if (valid.isEmpty()) break;
-            problem = update({level, valid});
+            const ClipmapUpdates::Update whole{level, valid};
+            problem = update({&whole, 1});
             if (!problem) drawWith(level);
         }
     }

@@ -296,21 +296,24 @@ void ClipmapTextures::makeNormals(int level, const ClipRect& vertices, const Sou
     draw(normalTarget_, 2 * layout_.pitch(), {vertices.low * 2, vertices.high * 2 + 1}, normals_, layerOf(level));
 }
 
-Result<std::size_t> ClipmapTextures::update(const ClipmapUpdates::Update& update, const Source& source) {
+/// The table of noise, once for each amplitude.
+void ClipmapTextures::makeNoise(const SynthesisedDetail& detail) {
+    if (noise_ && noiseAmplitude_ == detail.amplitude()) return;
+    if (noise_) glDeleteTextures(1, &noise_);
+    const TextureUnitScope keeps(kNoiseUnit, GL_TEXTURE_2D, 0);
+    GLint active = 0;
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
+    glActiveTexture(GL_TEXTURE0 + kNoiseUnit);
+    noise_ = makeNoiseTexture(detail);
+    glActiveTexture(GLenum(active));
+    noiseAmplitude_ = detail.amplitude();
+}
+
+Result<std::size_t> ClipmapTextures::update(std::span<const ClipmapUpdates::Update> updates, const Source& source) {
+    if (updates.empty()) return std::size_t(0);
     const ProfileScope scope("clipmap: update");
     if (auto problem = create()) return *problem;
-    const bool isDetail = layout_.sourceLevel(update.level) < 0;
-    if (isDetail && (!noise_ || noiseAmplitude_ != source.detail->amplitude())) {
-        if (noise_) glDeleteTextures(1, &noise_);
-        const TextureUnitScope keeps(kNoiseUnit, GL_TEXTURE_2D, 0);
-        GLint active = 0;
-        glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
-        glActiveTexture(GL_TEXTURE0 + kNoiseUnit);
-        noise_ = makeNoiseTexture(*source.detail);
-        glActiveTexture(GLenum(active));
-        noiseAmplitude_ = source.detail->amplitude();
-    }
-    if (!isDetail) send(update, source.grid);
+    if (source.detail && layout_.detailLevels() > 0) makeNoise(*source.detail);
     const PassScope pass(framebuffer_, vertexArray_);
     const TextureUnitScope noise(kNoiseUnit, GL_TEXTURE_2D, noise_), normals(kNormalUnit, GL_TEXTURE_2D_ARRAY, normals_),
         heights(kHeightUnit, GL_TEXTURE_2D_ARRAY, heights_);
@@ -318,11 +321,19 @@ Result<std::size_t> ClipmapTextures::update(const ClipmapUpdates::Update& update
     constexpr int kCopyUnit = 3;
     const TextureUnitScope copies(kCopyUnit, GL_TEXTURE_2D_ARRAY, 0);
     glActiveTexture(GL_TEXTURE0 + kCopyUnit);
-    if (isDetail) synthesise(update, source);
-    // Slopes look one vertex around.
-    makeNormals(update.level, ClipRect{update.rect.low - 2, update.rect.high + 2}.cutTo(source.valid[std::size_t(update.level)]),
-                source);
-    return isDetail ? std::size_t(0) : std::size_t(update.rect.samples()) * kBytesPerSample;
+    std::size_t sent = 0;
+    for (const ClipmapUpdates::Update& update : updates) {
+        if (layout_.sourceLevel(update.level) < 0) {
+            synthesise(update, source);
+        } else {
+            send(update, source.grid);
+            sent += std::size_t(update.rect.samples()) * kBytesPerSample;
+        }
+        // Slopes look one vertex around.
+        const ClipRect around{update.rect.low - 2, update.rect.high + 2};
+        makeNormals(update.level, around.cutTo(source.valid[std::size_t(update.level)]), source);
+    }
+    return sent;
 }
 
 std::vector<GlName> ClipmapTextures::release() {

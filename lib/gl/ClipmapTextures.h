@@ -44,9 +44,9 @@ public:
         std::span<const ClipRect> valid;  ///< of each level, after the update
     };
 
-    /// Stores the vertices of one rectangle of a level. Levels must come from coarse to fine. Returns the bytes sent. GL's state is
+    /// Stores the vertices of these rectangles, which must come from coarse to fine levels. Returns the bytes sent. GL's state is
     /// what it was. Error: GL lacks what it takes.
-    Result<std::size_t> update(const ClipmapUpdates::Update& update, const Source& source);
+    Result<std::size_t> update(std::span<const ClipmapUpdates::Update> updates, const Source& source);
 
     /// Which layer a level is in.
     int layerOf(int level) const { return memoryFree_ ? level % 2 : level; }
@@ -60,6 +60,7 @@ private:
     class PassScope;
 
     std::optional<Error> create();
+    void makeNoise(const SynthesisedDetail& detail);
     void send(const ClipmapUpdates::Update& update, const SampleGrid& grid);
     void synthesise(const ClipmapUpdates::Update& update, const Source& source);
     void makeNormals(int level, const ClipRect& vertices, const Source& source);

@@ -149,8 +149,7 @@ float Clipmap::boundError(const SampleGrid& grid, const BoxPyramid& boxes, const
         const int source = layout_.sourceLevel(level);
         // Levels of detail pass through all samples, whatever share of each is drawn.
         if (source < 0) break;
-        const ClipRect hole =
-            level > 0 && !active[std::size_t(level) - 1].isEmpty() ? coarserRect(active[std::size_t(level) - 1]) : ClipRect{};
+        const ClipRect hole = holeIn(active, level);
         const ClipRect domain = layout_.domain(level), whole = layout_.place(level, viewer);
         if (level == last) {
             if (!region.contains(domain)) return kInfinite;
@@ -183,12 +182,8 @@ float Clipmap::boundError(const SampleGrid& grid, const BoxPyramid& boxes, const
 
 void Clipmap::cover(const BoxPyramid& boxes, const ScreenSpace& space, const ClipmapSettings& settings) {
     frame_.patches.clear();
-    for (int level = 0; level < layout_.levels(); ++level) {
-        const ClipRect hole = level > 0 && !frame_.active[std::size_t(level) - 1].isEmpty()
-                                  ? coarserRect(frame_.active[std::size_t(level) - 1])
-                                  : ClipRect{};
-        coverLevel(layout_, level, frame_.active[std::size_t(level)], hole, frame_.patches);
-    }
+    for (int level = 0; level < layout_.levels(); ++level)
+        coverLevel(layout_, level, frame_.active[std::size_t(level)], holeIn(frame_.active, level), frame_.patches);
     const auto boundsOf = [&](const ClipmapPatch& patch) {
         // Vertices blend towards heights from all of the coarser cells around.
         const bool blends = patch.level + 1 < layout_.levels();

@@ -54,6 +54,11 @@ public:
     const ClipmapLayout& layout() const { return layout_; }
     /// That of the last selection.
     const Frame& frame() const { return frame_; }
+    /// The latest selection once more: nothing of it is new.
+    const Frame& again() {
+        frame_.updates = {};
+        return frame_;
+    }
     std::span<const ClipRect> valid() const { return updates_.valid(); }
     /// The share of the coarser level at a vertex, where levels are cropped too: the larger of two that depend on one axis each.
     float blend(int level, glm::ivec2 vertex) const { return std::max(blend(level, 0, vertex.x), blend(level, 1, vertex.y)); }

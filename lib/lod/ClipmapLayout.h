@@ -149,4 +149,10 @@ inline ClipRect coarserRect(const ClipRect& fine) {
     return {fine.low >> 1, fine.high >> 1};
 }
 
+/// What a level leaves to the next finer one, of these active regions; empty where that draws nothing.
+inline ClipRect holeIn(std::span<const ClipRect> active, int level) {
+    const bool isDrawn = level > 0 && !active[std::size_t(level) - 1].isEmpty();
+    return isDrawn ? coarserRect(active[std::size_t(level) - 1]) : ClipRect{};
+}
+
 }  // namespace terrain

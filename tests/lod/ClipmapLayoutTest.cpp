@@ -21,8 +21,7 @@ std::vector<ClipRect> wholeRegions(const ClipmapLayout& layout, int finest, glm:
 ClipmapPatches patchesOf(const ClipmapLayout& layout, const std::vector<ClipRect>& active) {
     ClipmapPatches patches;
     for (int level = 0; level < layout.levels(); ++level) {
-        const ClipRect hole =
-            level > 0 && !active[std::size_t(level) - 1].isEmpty() ? coarserRect(active[std::size_t(level) - 1]) : ClipRect{};
+        const ClipRect hole = holeIn(active, level);
         coverLevel(layout, level, active[std::size_t(level)], hole, patches);
     }
     return patches;
