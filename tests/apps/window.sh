@@ -14,14 +14,21 @@ for _ in $(seq 100); do [ -s "$SCRATCH/display" ] && break; sleep 0.1; done
 DISPLAY=:$(cat "$SCRATCH/display")
 export DISPLAY
 
+# find_window TITLE: waits for $program's window, gives it the focus and leaves its id in $window, empty when it does not come.
+find_window() {
+    window=
+    for _ in $(seq 100); do
+        window=$(xdotool search --onlyvisible --name "$1" 2>/dev/null | tail -1)
+        [ -n "$window" ] && break
+        kill -0 $program 2>/dev/null || return
+        sleep 0.1
+    done
+    [ -z "$window" ] || xdotool windowfocus "$window" mousemove 500 400
+}
+
 "$TEST" -h "$SCRATCH/map.raw" -a quadmesh >"$SCRATCH/out" 2>"$SCRATCH/err" &
 program=$!
-for _ in $(seq 100); do
-    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: .*triangles' 2>/dev/null | tail -1)
-    [ -n "$window" ] && break
-    kill -0 $program 2>/dev/null || break
-    sleep 0.1
-done
+find_window '^SoTerrainTest: .*triangles'
 if [ -z "$window" ]; then
     grep -q 'without SoQt' "$SCRATCH/err" && skip "this build has no SoQt"
     cat "$SCRATCH/err"
@@ -43,7 +50,6 @@ press() {
     xdotool keyup "$1"
 }
 
-xdotool windowfocus "$window" mousemove 500 400
 sleep 1
 shot home
 [ "$(od -An -v -t u1 -w3 -j 16 "$SCRATCH/home.ppm" | sort -u | wc -l)" -gt 50 ] || fail "the window shows no terrain"
@@ -79,12 +85,7 @@ wait $program || status=$?
 # Keys that change a terrain node are seen in its title.
 "$TEST" -h "$SCRATCH/map.raw" -a roam -e 2 >/dev/null 2>"$SCRATCH/err" &
 program=$!
-for _ in $(seq 100); do
-    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: roam .*px' 2>/dev/null | tail -1)
-    [ -n "$window" ] && break
-    sleep 0.1
-done
-xdotool windowfocus "$window" mousemove 500 400
+find_window '^SoTerrainTest: roam .*px'
 sleep 0.5
 title | grep -q 'no culling' || fail "culling is on without -c"
 xdotool key f && sleep 0.6
@@ -103,12 +104,7 @@ wait $program || fail "exit status $? of roam"
 # Fewer and more levels of a clipmap.
 "$TEST" -h "$SCRATCH/map.raw" -a clipmap --clipmap-size 15 -e 0 >/dev/null 2>"$SCRATCH/err" &
 program=$!
-for _ in $(seq 100); do
-    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: clipmap .*px' 2>/dev/null | tail -1)
-    [ -n "$window" ] && break
-    sleep 0.1
-done
-xdotool windowfocus "$window" mousemove 500 400
+find_window '^SoTerrainTest: clipmap .*px'
 triangles() {
     sleep 0.8
     title | sed 's/.*fps *\([0-9]*\) triangles.*/\1/'
@@ -137,12 +133,7 @@ Separator {
 SCENE
 "$TEST" --scene "$SCRATCH/slow.iv" -p "$SCRATCH/slow.csv" >/dev/null 2>"$SCRATCH/err" &
 program=$!
-for _ in $(seq 100); do
-    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: .*of 50.00 px' 2>/dev/null | tail -1)
-    [ -n "$window" ] && break
-    sleep 0.1
-done
-xdotool windowfocus "$window" mousemove 500 400
+find_window '^SoTerrainTest: .*of 50.00 px'
 sleep 1
 xdotool key Return
 sleep 1
@@ -167,12 +158,7 @@ rested=$(cut -d, -f7,9 "$SCRATCH/slow.csv" | uniq -c | awk 'END { print $1 }')
 program_path=$(realpath "$TEST")
 (cd "$SCRATCH" && exec "$program_path" -h map.raw -a roam >/dev/null 2>replay.err) &
 program=$!
-for _ in $(seq 100); do
-    window=$(xdotool search --onlyvisible --name '^SoTerrainTest: roam .*px' 2>/dev/null | tail -1)
-    [ -n "$window" ] && break
-    sleep 0.1
-done
-xdotool windowfocus "$window" mousemove 500 400
+find_window '^SoTerrainTest: roam .*px'
 sleep 0.5
 xdotool key r && press w && xdotool key r && sleep 0.6
 title | grep -q 'recorded soterrain-flight.csv' || fail "R records nothing: $(title)"

@@ -300,15 +300,7 @@ double largestJump(const SampleGrid& grid, const Box& box, const LodSettings& se
     for (int frame = 0; frame < 80; ++frame) {
         const View view = lookingAlong(box, 0.1 * frame, 12.0);
         const std::vector<double> now = drawnHeights(grid, mesh.select(grid, view, settings));
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            if (std::isnan(now[i]) || std::isnan(before[i]) || now[i] == before[i]) continue;
-            glm::dvec3 p(grid.position(int(i % std::size_t(grid.columns())), int(i / std::size_t(grid.columns()))));
-            if (!project(view, p).inView) continue;
-            p.z = now[i];
-            const glm::dvec2 there = project(view, p).pixel;
-            p.z = before[i];
-            largest = std::max(largest, glm::distance(there, project(view, p).pixel));
-        }
+        largest = std::max(largest, largestMove(grid, view, before, now));
         before = now;
     }
     return largest;

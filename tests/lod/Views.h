@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
@@ -12,6 +13,7 @@
 
 #include "base/Box.h"
 #include "base/View.h"
+#include "height/SampleGrid.h"
 #include "lod/LodAlgorithm.h"
 
 namespace terrain::test {
@@ -117,6 +119,23 @@ inline View flightView(const Box& over, int frame, int frames)
 inline View nextView(std::mt19937& random, const Box& over, int i)
 {
     return i % 3 == 0 ? randomView(random, over) : flightView(over, i, 40);
+}
+
+/// Largest way on screen, beyond what the camera does, of any sample in view whose drawn height, by its index, was `before` and is
+/// `now`; NaN: not drawn.
+inline double largestMove(const SampleGrid& grid, const View& view, const std::vector<double>& before, const std::vector<double>& now)
+{
+    double largest = 0.0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (std::isnan(now[i]) || std::isnan(before[i]) || now[i] == before[i]) continue;
+        glm::dvec3 p(grid.position(int(i % std::size_t(grid.columns())), int(i / std::size_t(grid.columns()))));
+        if (!project(view, p).inView) continue;
+        p.z = now[i];
+        const glm::dvec2 there = project(view, p).pixel;
+        p.z = before[i];
+        largest = std::max(largest, glm::distance(there, project(view, p).pixel));
+    }
+    return largest;
 }
 
 inline LodSettings randomSettings(std::mt19937& random)
