@@ -8,6 +8,7 @@
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoROAMTerrain.h>
 #include <SoTerrain/SoTerrainDetail.h>
+#include <SoTerrain/SoTerrainKit.h>
 #include <SoTerrain/SoTerrainShape.h>
 #include <SoTerrain/SoTerrainTexture.h>
 #include <SoTerrain/SoTerrainTextureElement.h>
@@ -29,6 +30,7 @@ void SoTerrain::init()
     SoGeoMipmapTerrain::initClass();
     SoGeometryClipmapTerrain::initClass();
     SoROAMTerrain::initClass();
+    SoTerrainKit::initClass();
 }
 
 const char * SoTerrain::getVersion()

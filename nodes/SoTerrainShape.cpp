@@ -65,6 +65,7 @@
 #include <cmath>
 
 #include <Inventor/SbMatrix.h>
+#include <Inventor/SoOutput.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
 #include <Inventor/bundles/SoMaterialBundle.h>
@@ -211,6 +212,13 @@ void SoTerrainShape::notify(SoNotList * list)
     // What was wrong may be right now, and is worth saying again if it is not.
     if (list->getLastField()) pimpl->warned.clear();
     inherited::notify(list);
+}
+
+void SoTerrainShape::addWriteReference(SoOutput * out, SbBool isFromField)
+{
+    // Of a class that is not its own Coin writes all fields into binary files, and can't read a field that holds no node back.
+    this->isBuiltIn = out->isBinary();
+    inherited::addWriteReference(out, isFromField);
 }
 
 std::optional<TerrainGrid> SoTerrainShape::Private::findGrid(SoState * state, bool withErrors)
