@@ -62,6 +62,9 @@ Keys
 
 R writes the flight to soterrain-flight.csv, P the profile of its replay, as -p does, to soterrain-replay.csv.
 
+Files of -h, -t and --scene that are not where they are named are looked for among the installed ones: -h terrain.png,
+-t terrain_texture.jpg, --scene terrain.iv.
+
 Exit status: 0, 1 when data can't be read, drawn or written, 2 for a wrong command line.
 )";
 

@@ -1,6 +1,7 @@
 // Shows a height map or a scene file with level of detail, in a window or without a display, and measures it.
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 #include <SoTerrain/SoTerrain.h>
 
@@ -9,6 +10,7 @@
 #include "Offscreen.h"
 #include "Options.h"
 #include "Scene.h"
+#include "ShippedData.h"
 #include "Window.h"
 
 namespace {
@@ -18,8 +20,9 @@ int fail(const terrain::Error& error) {
     return EXIT_FAILURE;
 }
 
-int show(const app::Options& options) {
+int show(app::Options options) {
     const double started = app::nowMs();
+    for (std::string* file : {&options.heightMap, &options.texture, &options.scene}) *file = app::findShipped(*file);
     // The window system comes first: without one there is no reason to read a large map.
     if (!options.offscreen) {
         if (auto problem = app::openDisplay("SoTerrainTest")) return fail(*problem);

@@ -18,6 +18,7 @@
 
 #include "BenchRun.h"
 #include "CoinStart.h"
+#include "ShippedData.h"
 
 namespace {
 
@@ -81,10 +82,10 @@ bool take(int code, Arguments& arguments) {
     app::BenchRequest& request = arguments.request;
     switch (code) {
     case Map:
-        request.map = optarg;
+        request.map = app::findShipped(optarg);
         return true;
     case Texture:
-        request.texture = optarg;
+        request.texture = app::findShipped(optarg);
         return true;
     case Frames:
         return readNumber(optarg, 1, request.frames);
