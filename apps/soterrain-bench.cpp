@@ -34,6 +34,7 @@ const char* const usageText =
     "  --pixel-error PX    field pixelError of the nodes that have it (2)\n"
     "  --error-every K     measure the screen error every K frames (20)\n"
     "  --json FILE         write everything that was measured here too\n"
+    "  --help              print this\n"
     "Exit status: 0, 1 when a node could not be measured, 2 for a wrong command line.\n";
 
 struct Arguments {
