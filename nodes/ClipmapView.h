@@ -36,6 +36,7 @@ public:
     std::optional<terrain::Error> render(const TerrainFrame & frame, const ClipmapOptions & options, const terrain::ClipmapErrors * errors,
                                          SoTerrainStatistics & statistics);
 
+    bool isThere() const override { return renderer_.isThere(); }
     std::vector<terrain::GlName> release() override;
     std::size_t memoryBytes() const override { return clipmap_.bytes(); }
     std::size_t bufferBytes() const override { return renderer_.bufferBytes(); }

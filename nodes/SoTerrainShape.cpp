@@ -320,7 +320,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.frame = number;
     statistics.buildMilliseconds = data->buildMilliseconds;
 
-    TerrainView & view = views.find(ViewKey(action), number);
+    TerrainView & view = views.find(action);
     if (view.boxes != data->model.boxes) TerrainViews::discardDrawing(view);
     if (view.boxes != data->model.boxes || view.meshVersion != meshVersion) view.algorithm.reset();
     view.boxes = data->model.boxes;
@@ -330,7 +330,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     const StateAttributes attributes(action, data->grid, true);
     for (const std::string & problem : attributes.problems()) master->warnOnce(problem.c_str());
     const terrain::View camera = viewOf(state);
-    const TerrainTextureUse::Frame texture = textures.update(action, camera, data->grid, attributes, number);
+    const TerrainTextureUse::Frame texture = view.texture.update(action, camera, data->grid, attributes);
     if (!texture.problem.empty()) master->warnOnce(texture.problem.c_str());
     terrain::LodSettings settings = settingsFor(state, *data);
     settings.vertexBytes = sizeof(glm::vec3) + attributes.format().stride();
@@ -341,8 +341,8 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.uploadedBytes += texture.uploadedBytes;
     statistics.levels = view.report.levels;
     statistics.errorPixels = view.report.errorPixels;
-    statistics.memoryBytes = grids.bytes() + views.memoryBytes() + textures.memoryBytes();
-    statistics.bufferBytes = views.bufferBytes() + textures.textureBytes();
+    statistics.memoryBytes = grids.bytes() + views.memoryBytes();
+    statistics.bufferBytes = views.bufferBytes();
     if (!statistics.converged && !again.isScheduled()) again.schedule();
 }
 

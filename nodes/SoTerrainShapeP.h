@@ -11,7 +11,6 @@
 #include <SoTerrain/SoTerrainShape.h>
 
 #include "GridCache.h"
-#include "TerrainTextureUse.h"
 #include "TerrainViews.h"
 
 class StateAttributes;
@@ -35,7 +34,6 @@ public:
     SoTerrainShape * master;
     GridCache grids;
     TerrainViews views;
-    TerrainTextureUse textures;
     std::uint64_t meshVersion = 0;  ///< meshes of an earlier one are replaced
     SoTerrainStatistics statistics;
     std::set<std::string> warned;

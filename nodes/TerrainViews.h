@@ -7,7 +7,9 @@
 #include <vector>
 
 #include <Inventor/SbVec2s.h>
+#include <Inventor/sensors/SoNodeSensor.h>
 
+#include "TerrainTextureUse.h"
 #include "gl/GlProgram.h"
 #include "gl/TerrainRenderer.h"
 #include "lod/LodAlgorithm.h"
@@ -24,12 +26,15 @@ struct ViewKey {
 
     explicit ViewKey(SoGLRenderAction * action);
     bool operator==(const ViewKey & other) const = default;
+    bool hasPlaceOf(const ViewKey & other) const { return context == other.context && path == other.path; }
 };
 
 /// What a node keeps of a view that it draws with programs of its own.
 class ViewDrawing {
 public:
     virtual ~ViewDrawing() = default;
+    /// Whether the current context has its GL objects.
+    virtual bool isThere() const = 0;
     /// All GL objects, which are the caller's to delete.
     virtual std::vector<terrain::GlName> release() = 0;
     virtual std::size_t memoryBytes() const = 0;
@@ -43,14 +48,27 @@ struct TerrainView {
     std::unique_ptr<terrain::LodAlgorithm> algorithm;
     terrain::TerrainRenderer renderer;
     std::unique_ptr<ViewDrawing> drawing;  ///< of a node that draws itself
+    TerrainTextureUse texture;
     terrain::SelectionReport report;  ///< of the latest selection
     bool hasMesh = false;
-    std::uint64_t lastFrame = 0;
 
-    explicit TerrainView(const ViewKey & k) : key(k) {}
+    TerrainView(const ViewKey & key, SoNode * root);
+
+private:
+    friend class TerrainViews;
+    /// Hears of nothing but the root's death: a viewer's own root dies with the viewer.
+    class RootSensor : public SoNodeSensor {
+    public:
+        void notify(SoNotList *) override {}
+    };
+
+    RootSensor root_;
+    bool isOver_ = false;  ///< given up, to be erased
+    std::uint64_t lastRound_ = 0;
 };
 
-/// The views of one node. Buffers are deleted in the context that they belong to: at once when it goes, else when it is next current.
+/// The views of one node. GL objects are deleted in the context that they belong to: at once when it goes, else when it is next current.
+/// A view goes with its context, with the root of its path, and when the node was drawn often without it.
 class TerrainViews {
 public:
     TerrainViews();
@@ -58,8 +76,8 @@ public:
     TerrainViews(const TerrainViews &) = delete;
     TerrainViews & operator=(const TerrainViews &) = delete;
 
-    /// The view with this key, new if need be. Views that were not drawn for long are given up.
-    TerrainView & find(const ViewKey & key, std::uint64_t frame);
+    /// The view that is being drawn, new if need be.
+    TerrainView & find(SoGLRenderAction * action);
     /// Gives up what a node has drawn a view with, whose context must be current.
     static void discardDrawing(TerrainView & view);
     std::size_t memoryBytes() const;
@@ -67,9 +85,11 @@ public:
 
 private:
     static void contextGoes(std::uint32_t context, void * closure);
+    static void rootDies(void * view, SoSensor *);
     static void giveUp(TerrainView & view);
 
     std::vector<std::unique_ptr<TerrainView>> views_;
+    std::uint64_t round_ = 0;  ///< counts up whenever a place is drawn again
 };
 
 #endif

@@ -70,7 +70,7 @@ std::optional<Error> ClipmapRenderer::whatIsMissing(const ClipmapLayout& layout)
 }
 
 void ClipmapRenderer::createMeshes() {
-    if (vertexArray_) return;
+    if (vertices_.exists()) return;
     MeshWriter writer;
     const auto add = [&](Footprint footprint, const auto& write) {
         Mesh& mesh = meshes_[std::size_t(footprint)];
@@ -83,12 +83,16 @@ void ClipmapRenderer::createMeshes() {
     add(Footprint::Column, [&] { writer.grid(2, strip); });
     add(Footprint::Row, [&] { writer.grid(strip, 2); });
     add(Footprint::Seam, [&] { writer.seam(layout_.size() - 1); });
-    glGenVertexArrays(1, &vertexArray_);
-    glBindVertexArray(vertexArray_);
     vertices_.fill(GL_ARRAY_BUFFER, writer.vertices.data(), writer.vertices.size() * sizeof(Corner), GL_STATIC_DRAW);
+    indices_.fill(GL_ELEMENT_ARRAY_BUFFER, writer.indices.data(), writer.indices.size() * sizeof(GLuint), GL_STATIC_DRAW);
+}
+
+/// What the current vertex array has but for the patches, which drawLevels() sets.
+void ClipmapRenderer::setAttributes() const {
+    vertices_.bind(GL_ARRAY_BUFFER);
+    indices_.bind(GL_ELEMENT_ARRAY_BUFFER);
     glEnableVertexAttribArray(kCornerAttribute);
     glVertexAttribIPointer(kCornerAttribute, 2, GL_SHORT, sizeof(Corner), nullptr);
-    indices_.fill(GL_ELEMENT_ARRAY_BUFFER, writer.indices.data(), writer.indices.size() * sizeof(GLuint), GL_STATIC_DRAW);
     for (const GLuint attribute : {GLuint(kPatchAttribute), GLuint(kLevelAttribute)}) {
         glEnableVertexAttribArray(attribute);
         glVertexAttribDivisor(attribute, 1);
@@ -216,12 +220,14 @@ Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame
     if (!memoryFree_)
         if (auto problem = update(frame.updates)) return *problem;
 
-    GLint programBefore = 0, arrayBefore = 0, bufferBefore = 0, faceBefore = 0;
+    GLint programBefore = 0, bufferBefore = 0, faceBefore = 0;
     glGetIntegerv(GL_CURRENT_PROGRAM, &programBefore);
-    glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &arrayBefore);
     glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &bufferBefore);
     glGetIntegerv(GL_FRONT_FACE, &faceBefore);
+    // A binding of indices is part of the vertex array: none but this one's is touched.
+    std::optional<VertexArrayScope> vertexArray(std::in_place);
     createMeshes();
+    setAttributes();
     sendPatches(frame);
     if (drawing.clockwise) glFrontFace(faceBefore == GL_CCW ? GL_CW : GL_CCW);
     const int heightUnit = TextureClipmap::lastUnits() - 1, normalUnit = heightUnit - 1;
@@ -234,9 +240,7 @@ Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame
         std::optional<TextureClipmap::Binding> colours;
         if (drawing.texture) colours.emplace(*drawing.texture, program.name(), TextureClipmap::lastUnits());
         setUniforms(program, frame, drawing);
-        glBindVertexArray(vertexArray_);
         drawLevels(level, result);
-        glBindVertexArray(GLuint(arrayBefore));
         glUseProgram(GLuint(programBefore));
     };
     std::optional<Error> problem;
@@ -252,7 +256,7 @@ Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame
         }
     }
     if (drawing.clockwise) glFrontFace(GLenum(faceBefore));
-    glBindVertexArray(GLuint(arrayBefore));
+    vertexArray.reset();
     glBindBuffer(GL_ARRAY_BUFFER, GLuint(bufferBefore));
     if (problem) return *problem;
     return result;
@@ -266,7 +270,6 @@ std::vector<GlName> ClipmapRenderer::release() {
     take(vertices_);
     take(indices_);
     for (GlBuffer& buffer : patches_.all()) take(buffer);
-    if (vertexArray_) names.push_back({GlName::VertexArray, std::exchange(vertexArray_, 0u)});
     for (auto& [shading, program] : programs_)
         if (const GLuint name = program.release()) names.push_back({GlName::Program, name});
     programs_.clear();

@@ -55,6 +55,8 @@ public:
     Result<Drawn> draw(const Clipmap::Frame& frame, const ClipmapTextures::Source& source, const ClipmapDrawing& drawing);
     const ClipmapTextures& textures() const { return textures_; }
     std::size_t bufferBytes() const { return textures_.bytes() + vertices_.bytes() + indices_.bytes() + patches_.bytes(); }
+    /// Whether the current context has all this, as TerrainRenderer::isThere().
+    bool isThere() const { return vertices_.isThere() && (textures_.heights() == 0 || glIsTexture(textures_.heights())); }
     std::vector<GlName> release();
 
 private:
@@ -64,6 +66,7 @@ private:
     };
 
     void createMeshes();
+    void setAttributes() const;
     void sendPatches(const Clipmap::Frame& frame);
     void setUniforms(GlProgram& program, const Clipmap::Frame& frame, const ClipmapDrawing& drawing);
     void drawLevels(int level, Drawn& drawn);
@@ -73,7 +76,6 @@ private:
     ClipmapTextures textures_;
     GlBuffer vertices_, indices_;
     GlStream patches_;
-    GLuint vertexArray_ = 0;
     std::array<Mesh, kFootprints> meshes_{};
     /// First instance of each footprint and level: those of level l are [l], up to [l + 1].
     std::array<std::vector<GLsizei>, kFootprints> firstPatch_;

@@ -133,14 +133,12 @@ TextureUnitScope::~TextureUnitScope() {
 /// State in which passes write to textures exactly what they compute; as it was, afterwards.
 class ClipmapTextures::PassScope {
 public:
-    PassScope(GLuint framebuffer, GLuint vertexArray) {
-        glPushAttrib(GL_ALL_ATTRIB_BITS);
-        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawing_);
-        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &reading_);
+    explicit PassScope(const GlBuffer& triangle) {
         glGetIntegerv(GL_CURRENT_PROGRAM, &program_);
-        glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &vertexArray_);
-        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-        glBindVertexArray(vertexArray);
+        glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &buffer_);
+        triangle.bind(GL_ARRAY_BUFFER);
+        glEnableVertexAttribArray(0);
+        glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
         for (const GLenum off : {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_BLEND, GL_ALPHA_TEST, GL_CULL_FACE, GL_COLOR_LOGIC_OP,
                                  GL_DITHER, GL_POLYGON_STIPPLE, GL_MULTISAMPLE})
             glDisable(off);
@@ -154,18 +152,23 @@ public:
         glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_FALSE);
     }
     ~PassScope() {
-        glBindVertexArray(GLuint(vertexArray_));
+        glBindBuffer(GL_ARRAY_BUFFER, GLuint(buffer_));
         glUseProgram(GLuint(program_));
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(drawing_));
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(reading_));
-        glPopAttrib();
         if (discards_) glEnable(GL_RASTERIZER_DISCARD);
     }
     PassScope(const PassScope&) = delete;
     PassScope& operator=(const PassScope&) = delete;
 
 private:
-    GLint drawing_ = 0, reading_ = 0, program_ = 0, vertexArray_ = 0;
+    struct Attributes {
+        Attributes() { glPushAttrib(GL_ALL_ATTRIB_BITS); }
+        ~Attributes() { glPopAttrib(); }
+    };
+    // In this order: what is read and drawn to belongs to the frame buffer, which must be bound again when attributes come back.
+    Attributes attributes_;
+    FramebufferScope framebuffer_;
+    VertexArrayScope vertexArray_;
+    GLint program_ = 0, buffer_ = 0;
     GLboolean discards_ = GL_FALSE;
 };
 
@@ -179,11 +182,10 @@ std::optional<Error> ClipmapTextures::create() {
         return Error{"geometry clipmap",
                      "textures of " + std::to_string(2 * pitch) + " texels a side and " + std::to_string(layers) + " layers",
                      "an OpenGL with " + std::to_string(largest) + " and " + std::to_string(layersThere)};
-    GLint array = 0, flat = 0, buffer = 0, vertexArray = 0;
+    GLint array = 0, flat = 0, buffer = 0;
     glGetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &array);
     glGetIntegerv(GL_TEXTURE_BINDING_2D, &flat);
     glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &buffer);
-    glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &vertexArray);
     heights_ = makeTexture(GL_TEXTURE_2D_ARRAY, GL_RG32F, pitch, layers, GL_NEAREST);
     normals_ = makeTexture(GL_TEXTURE_2D_ARRAY, GL_RGBA8, 2 * pitch, layers, GL_LINEAR);
     if (layout_.detailLevels() > 0) heightTarget_ = makeTexture(GL_TEXTURE_2D, GL_RG32F, pitch, 1, GL_NEAREST);
@@ -193,14 +195,8 @@ std::optional<Error> ClipmapTextures::create() {
     glBindTexture(GL_TEXTURE_2D_ARRAY, GLuint(array));
     glBindTexture(GL_TEXTURE_2D, GLuint(flat));
 
-    glGenFramebuffers(1, &framebuffer_);
-    glGenVertexArrays(1, &vertexArray_);
-    glBindVertexArray(vertexArray_);
     constexpr float kTriangle[6] = {-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
     triangle_.fill(GL_ARRAY_BUFFER, kTriangle, sizeof kTriangle, GL_STATIC_DRAW);
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glBindVertexArray(GLuint(vertexArray));
     glBindBuffer(GL_ARRAY_BUFFER, GLuint(buffer));
 
     const std::string head = std::string("#version 130\n") + kAddress;
@@ -314,7 +310,7 @@ Result<std::size_t> ClipmapTextures::update(std::span<const ClipmapUpdates::Upda
     const ProfileScope scope("clipmap: update");
     if (auto problem = create()) return *problem;
     if (source.detail && layout_.detailLevels() > 0) makeNoise(*source.detail);
-    const PassScope pass(framebuffer_, vertexArray_);
+    const PassScope pass(triangle_);
     const TextureUnitScope noise(kNoiseUnit, GL_TEXTURE_2D, noise_), normals(kNormalUnit, GL_TEXTURE_2D_ARRAY, normals_),
         heights(kHeightUnit, GL_TEXTURE_2D_ARRAY, heights_);
     // draw() binds what it copies to.
@@ -342,8 +338,6 @@ std::vector<GlName> ClipmapTextures::release() {
         if (name) names.push_back({kind, std::exchange(name, 0u)});
     };
     for (GLuint* texture : {&heights_, &normals_, &heightTarget_, &normalTarget_, &noise_}) take(GlName::Texture, *texture);
-    take(GlName::Framebuffer, framebuffer_);
-    take(GlName::VertexArray, vertexArray_);
     if (GLuint buffer = triangle_.release()) take(GlName::Buffer, buffer);
     for (GlProgram* program : {&detailProgram_, &normalProgram_})
         if (GLuint name = program->release()) take(GlName::Program, name);

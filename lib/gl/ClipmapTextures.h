@@ -69,7 +69,7 @@ private:
     ClipmapLayout layout_;
     bool memoryFree_;
     GLuint heights_ = 0, normals_ = 0;
-    GLuint heightTarget_ = 0, normalTarget_ = 0, noise_ = 0, framebuffer_ = 0, vertexArray_ = 0;
+    GLuint heightTarget_ = 0, normalTarget_ = 0, noise_ = 0;
     GlBuffer triangle_;
     GlProgram detailProgram_, normalProgram_;
     float noiseAmplitude_ = 0.0f;

@@ -24,6 +24,8 @@ public:
     void update(GLenum target, std::size_t offset, const void* data, std::size_t bytes);
     void bind(GLenum target) const { glBindBuffer(target, name_); }
     bool exists() const { return name_ != 0; }
+    /// Whether the current context has it.
+    bool isThere() const { return name_ == 0 || glIsBuffer(name_); }
     std::size_t bytes() const { return bytes_; }
     /// The name, or 0; forgets it.
     GLuint release();
@@ -48,6 +50,49 @@ public:
 private:
     std::array<GlBuffer, 3> ring_;
     std::size_t current_ = 0;
+};
+
+/// A vertex array object of its own while it lives. Contexts that share their objects do not share these, so none is kept for
+/// later, when another context may be current.
+class VertexArrayScope {
+public:
+    VertexArrayScope() {
+        glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &before_);
+        glGenVertexArrays(1, &name_);
+        glBindVertexArray(name_);
+    }
+    ~VertexArrayScope() {
+        glBindVertexArray(GLuint(before_));
+        glDeleteVertexArrays(1, &name_);
+    }
+    VertexArrayScope(const VertexArrayScope&) = delete;
+    VertexArrayScope& operator=(const VertexArrayScope&) = delete;
+
+private:
+    GLuint name_ = 0;
+    GLint before_ = 0;
+};
+
+/// A frame buffer object of its own while it lives, for drawing and reading. Not kept, for the same reason.
+class FramebufferScope {
+public:
+    FramebufferScope() {
+        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawing_);
+        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &reading_);
+        glGenFramebuffers(1, &name_);
+        glBindFramebuffer(GL_FRAMEBUFFER, name_);
+    }
+    ~FramebufferScope() {
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(drawing_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(reading_));
+        glDeleteFramebuffers(1, &name_);
+    }
+    FramebufferScope(const FramebufferScope&) = delete;
+    FramebufferScope& operator=(const FramebufferScope&) = delete;
+
+private:
+    GLuint name_ = 0;
+    GLint drawing_ = 0, reading_ = 0;
 };
 
 }  // namespace terrain

@@ -38,12 +38,6 @@ void deleteNames(std::span<const GlName> names) {
         case GlName::Texture:
             glDeleteTextures(1, &object.name);
             break;
-        case GlName::Framebuffer:
-            glDeleteFramebuffers(1, &object.name);
-            break;
-        case GlName::VertexArray:
-            glDeleteVertexArrays(1, &object.name);
-            break;
         case GlName::Program:
             glDeleteProgram(object.name);
             break;

@@ -15,7 +15,7 @@ namespace terrain {
 
 /// An object of the context that was current when it was made.
 struct GlName {
-    enum Kind { Buffer, Texture, Framebuffer, VertexArray, Program };
+    enum Kind { Buffer, Texture, Program };
     Kind kind;
     GLuint name;
 };

@@ -21,7 +21,7 @@ struct HeadlessContext::Impl {
     int height = 0;
 
     std::string openDisplay();
-    std::string createContext();
+    std::string createContext(EGLContext sharedWith);
     std::string createFramebuffer();
 };
 
@@ -82,14 +82,14 @@ std::string HeadlessContext::Impl::openDisplay() {
     return "no EGL platform that works without a display";
 }
 
-std::string HeadlessContext::Impl::createContext() {
+std::string HeadlessContext::Impl::createContext(EGLContext sharedWith) {
     if (!eglBindAPI(EGL_OPENGL_API)) return "EGL without desktop OpenGL";
     const EGLint attributes[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (!eglChooseConfig(display, attributes, &config, 1, &count) || count < 1) return "no EGL configuration for desktop OpenGL";
     // Without a requested version the driver gives its newest compatibility profile, which Coin needs.
-    context = eglCreateContext(display, config, EGL_NO_CONTEXT, nullptr);
+    context = eglCreateContext(display, config, sharedWith, nullptr);
     if (context == EGL_NO_CONTEXT) return eglProblem("eglCreateContext");
     if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return eglProblem("eglMakeCurrent");
     return epoxy_gl_version() >= 30 ? std::string() : "OpenGL " + std::to_string(epoxy_gl_version() / 10.0);
@@ -133,7 +133,7 @@ HeadlessContext::~HeadlessContext() {
     eglDestroyContext(impl_->display, impl_->context);
 }
 
-Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create(int width, int height) {
+Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create(int width, int height, const HeadlessContext* sharedWith) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1) return Error{"offscreen frame buffer", "a size of at least 1x1", size};
     std::unique_ptr<HeadlessContext> context(new HeadlessContext);
@@ -141,7 +141,7 @@ Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create(int width, int 
     impl.width = width;
     impl.height = height;
     std::string problem = impl.openDisplay();
-    if (problem.empty()) problem = impl.createContext();
+    if (problem.empty()) problem = impl.createContext(sharedWith ? sharedWith->impl_->context : EGL_NO_CONTEXT);
     if (!problem.empty()) return Error{"offscreen rendering", "EGL with desktop OpenGL 3.0 or newer and no display", problem};
     problem = impl.createFramebuffer();
     if (!problem.empty()) return Error{"offscreen frame buffer", "a size that this OpenGL can draw, not " + size, problem};

@@ -22,8 +22,9 @@ struct Image {
 /// is current in the creating thread from create() on; makeCurrent() brings it back after another one was used.
 class HeadlessContext {
 public:
-    /// Error: no EGL, no surfaceless platform, no desktop GL, or a size that the frame buffer can't have.
-    static Result<std::unique_ptr<HeadlessContext>> create(int width, int height);
+    /// With `sharedWith` it has that context's buffers, textures and programs, as GL shares them. Error: no EGL, no surfaceless
+    /// platform, no desktop GL, or a size that the frame buffer can't have.
+    static Result<std::unique_ptr<HeadlessContext>> create(int width, int height, const HeadlessContext* sharedWith = nullptr);
     ~HeadlessContext();
 
     void makeCurrent();

@@ -58,6 +58,8 @@ public:
     std::uint32_t draws() const { return (indexCount_ > seamCount_ ? 1u : 0u) + (seamCount_ > 0 ? 1u : 0u); }
     std::size_t bufferBytes() const { return positions_.bytes() + attributes_.bytes() + indices_.bytes(); }
     std::size_t memoryBytes() const { return mirror_.capacity(); }
+    /// Whether the current context has the buffers: not where another one has taken its id without notice.
+    bool isThere() const { return positions_.current().isThere(); }
     /// Names of all buffers, which are the caller's to delete; forgets them.
     std::vector<GLuint> release();
 
