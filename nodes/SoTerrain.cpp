@@ -8,6 +8,7 @@
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoROAMTerrain.h>
 #include <SoTerrain/SoTerrainDetail.h>
+#include <SoTerrain/SoTerrainDrape.h>
 #include <SoTerrain/SoTerrainKit.h>
 #include <SoTerrain/SoTerrainShape.h>
 #include <SoTerrain/SoTerrainTexture.h>
@@ -30,6 +31,7 @@ void SoTerrain::init()
     SoGeoMipmapTerrain::initClass();
     SoGeometryClipmapTerrain::initClass();
     SoROAMTerrain::initClass();
+    SoTerrainDrape::initClass();
     SoTerrainKit::initClass();
 }
 

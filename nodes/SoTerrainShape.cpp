@@ -64,7 +64,6 @@
 #include <chrono>
 #include <cmath>
 
-#include <Inventor/SbMatrix.h>
 #include <Inventor/SoOutput.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
@@ -76,12 +75,8 @@
 #include <Inventor/elements/SoGLCacheContextElement.h>
 #include <Inventor/elements/SoGLLazyElement.h>
 #include <Inventor/elements/SoGLShaderProgramElement.h>
-#include <Inventor/elements/SoModelMatrixElement.h>
-#include <Inventor/elements/SoProjectionMatrixElement.h>
 #include <Inventor/elements/SoShapeHintsElement.h>
 #include <Inventor/elements/SoShapeStyleElement.h>
-#include <Inventor/elements/SoViewingMatrixElement.h>
-#include <Inventor/elements/SoViewportRegionElement.h>
 #include <Inventor/errors/SoDebugError.h>
 #include <Inventor/misc/SoState.h>
 
@@ -93,6 +88,7 @@
 #include <glm/matrix.hpp>
 
 #include "StateAttributes.h"
+#include "StateView.h"
 #include "TerrainFrame.h"
 #include "lod/BruteForceMesh.h"
 #include "lod/DetailCast.h"
@@ -109,29 +105,10 @@ double millisecondsSince(Clock::time_point start)
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Coin multiplies row vectors from the left, GLM column vectors from the right, and both store the same numbers in the same order.
-glm::dmat4 toGlm(const SbMatrix & matrix)
-{
-    glm::dmat4 result;
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) result[i][j] = matrix[i][j];
-    return result;
-}
-
 /// Whether columns, rows and heights make a left-handed frame.
 bool isMirrored(const terrain::SampleGrid & grid)
 {
     return glm::determinant(grid.localFromFrame()) < 0.0;
-}
-
-terrain::View viewOf(SoState * state)
-{
-    terrain::View view;
-    view.clipFromLocal = toGlm(SoProjectionMatrixElement::get(state)) * toGlm(SoViewingMatrixElement::get(state)) *
-                         toGlm(SoModelMatrixElement::get(state));
-    const SbVec2s size = SoViewportRegionElement::get(state).getViewportSizePixels();
-    view.viewportPixels = {size[0], size[1]};
-    return view;
 }
 
 }  // namespace

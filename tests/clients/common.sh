@@ -27,7 +27,7 @@ expect() {
 draws() {
     local kind=$1 scene
     shift
-    for scene in BruteForce ROAM HeightMap; do
+    for scene in BruteForce ROAM HeightMap Kit; do
         expect "client_${kind}_$scene" green red env LD_LIBRARY_PATH="$modules" "$@" "$clients/$scene.iv"
         expect "client_${kind}_${scene}_unknown" red green env -u LD_LIBRARY_PATH "$@" "$clients/$scene.iv"
     done

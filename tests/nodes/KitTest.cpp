@@ -59,11 +59,17 @@ void writeHills(const std::string& path) {
     for (const float height : map.heights) file.put(char(std::uint8_t(height)));
 }
 
-SoTerrainShape* terrainOf(SoTerrainKit* kit) { return static_cast<SoTerrainShape*>(kit->getPart("terrain", TRUE)); }
+SoTerrainShape* terrainOf(SoTerrainKit* kit) {
+    return static_cast<SoTerrainShape*>(kit->getPart("terrain", TRUE));
+}
 
-std::string className(const SoNode* node) { return node ? node->getTypeId().getName().getString() : "none"; }
+std::string className(const SoNode* node) {
+    return node ? node->getTypeId().getName().getString() : "none";
+}
 
-void* reallocate(void* pointer, std::size_t size) { return std::realloc(pointer, size); }
+void* reallocate(void* pointer, std::size_t size) {
+    return std::realloc(pointer, size);
+}
 
 std::string write(SoNode* root, bool binary = false) {
     SoOutput output;
@@ -92,7 +98,9 @@ SoTerrainKit* kitIn(SoNode* root) {
     return search.getPath() ? static_cast<SoTerrainKit*>(static_cast<SoFullPath*>(search.getPath())->getTail()) : nullptr;
 }
 
-Ref<SoSeparator> readKit(const std::string& inside) { return read("#Inventor V2.1 ascii\nSoTerrainKit { " + inside + " }"); }
+Ref<SoSeparator> readKit(const std::string& inside) {
+    return read("#Inventor V2.1 ascii\nSoTerrainKit { " + inside + " }");
+}
 
 /// A kit of hills in a folder of its own, under a separator with light and camera.
 struct KitScene {
@@ -121,8 +129,8 @@ TEST(Kit, IsATerrainInOneNode) {
     writeHills(folder.file("hills.raw"));
     // A colour ramp that Coin reads without help: the file names are relative to the file of the scene.
     std::ofstream(folder.file("scene.iv")) << "#Inventor V2.1 ascii\nSoTerrainKit { algorithm GEO_MIPMAP\n"
-        "  heightMap SoHeightMap { filename \"hills.raw\" heightScale 0.1 }\n"
-        "  texture Texture2 { image 2 2 3 0xff0000 0xff00 0xff 0xffffff } }";
+                                              "  heightMap SoHeightMap { filename \"hills.raw\" heightScale 0.1 }\n"
+                                              "  texture Texture2 { image 2 2 3 0xff0000 0xff00 0xff 0xffffff } }";
     SoInput input;
     ASSERT_TRUE(input.openFile(folder.file("scene.iv").c_str()));
     Ref<SoSeparator> scene(SoDB::readAll(&input));
@@ -391,7 +399,8 @@ TEST(Kit, RefusesPartsOfWrongTypesWithAMessage) {
     for (const char* part : {"terrain", "heightMap", "texture", "color"}) {
         Messages messages;
         EXPECT_FALSE(kit->setPart(part, new SoSphere)) << part;
-        EXPECT_NE(messages.text().find("part " + std::string(part) + ": expected a"), std::string::npos) << part << ": " << messages.text();
+        EXPECT_NE(messages.text().find("part " + std::string(part) + ": expected a"), std::string::npos)
+            << part << ": " << messages.text();
         EXPECT_EQ(messages.all().size(), 1u) << messages.text();
     }
     EXPECT_EQ(className(terrainOf(kit.get())), "SoROAMTerrain");
