@@ -28,6 +28,7 @@ public:
     void fill(const Key & key, const terrain::DrapeSelection & selection, const std::vector<std::uint32_t> & colours);
     void draw(GLenum mode) const;
 
+    bool isThere() const override { return positions_.current().isThere() && colours_.current().isThere(); }
     std::vector<terrain::GlName> release() override;
     std::size_t memoryBytes() const override { return firsts_.capacity() * 2 * sizeof(int); }
     std::size_t bufferBytes() const override { return positions_.bytes() + colours_.bytes(); }

@@ -340,7 +340,7 @@ void SoTerrainDrape::Private::render(SoGLRenderAction * action)
     SoState * state = action->getState();
     const auto found = find(state);
     if (!found || found->lines.runs().empty()) return;
-    TerrainView & view = views.find(ViewKey(action), ++frame);
+    TerrainView & view = views.find(action);
     if (!view.drawing) view.drawing = std::make_unique<DrapeDrawing>();
     DrapeDrawing & drawing = static_cast<DrapeDrawing &>(*view.drawing);
 

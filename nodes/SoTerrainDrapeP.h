@@ -51,7 +51,6 @@ public:
     TerrainViews views;
     std::vector<std::shared_ptr<const Draped>> draped;  ///< the latest last
     std::uint64_t version = 1;
-    std::uint64_t frame = 0;
     std::set<std::string> warned;
 };
 
