@@ -95,11 +95,14 @@ void StateAttributes::readTextures(SoState * state, bool forGL)
         if (!wanted) continue;
         const auto type = SoMultiTextureCoordinateElement::getType(state, unit);
         mix(std::uint64_t(type) + std::uint64_t(unit) * 16);
-        // Functions are GL's own texture coordinate generation: it needs no coordinates from us.
-        if (type == SoMultiTextureCoordinateElement::FUNCTION || type == SoMultiTextureCoordinateElement::TEXGEN) continue;
+        // GL's own texture coordinate generation needs no coordinates from us.
+        if (type == SoMultiTextureCoordinateElement::TEXGEN) continue;
         if (type == SoMultiTextureCoordinateElement::EXPLICIT)
             isEnough("texture coordinates", PER_VERTEX, textureCoordinates_->getNum(unit), "the rest span the terrain");
         format_.textureUnits.push_back(unit);
+        if (type == SoMultiTextureCoordinateElement::FUNCTION ||
+            (type == SoMultiTextureCoordinateElement::EXPLICIT && textureCoordinates_->getDimension(unit) > 2))
+            format_.wideUnits.push_back(unit);
         mix(TextureCoordinateElementAccess::unitId(textureCoordinates_, unit));
     }
 }
@@ -136,16 +139,30 @@ SbVec3f StateAttributes::normal(int column, int row) const
     return normals_[boundIndex(normalBinding_, column, row, normalCount_)];
 }
 
-SbVec2f StateAttributes::textureCoordinate(int unit, int column, int row) const
+SbVec4f StateAttributes::wideTextureCoordinate(int unit, int column, int row) const
 {
     const std::size_t index = grid_.index(column, row);
-    if (textureCoordinates_->getType(unit) == SoMultiTextureCoordinateElement::EXPLICIT &&
-        index < std::size_t(textureCoordinates_->getNum(unit))) {
-        if (textureCoordinates_->getDimension(unit) == 2) return textureCoordinates_->get2(unit, int(index));
-        const SbVec4f & four = textureCoordinates_->get4(unit, int(index));
-        return four[3] != 0.0f ? SbVec2f(four[0] / four[3], four[1] / four[3]) : SbVec2f(four[0], four[1]);
+    const auto type = textureCoordinates_->getType(unit);
+    if (type == SoMultiTextureCoordinateElement::EXPLICIT && index < std::size_t(textureCoordinates_->getNum(unit)))
+        return textureCoordinates_->get4(unit, int(index));
+    if (type == SoMultiTextureCoordinateElement::FUNCTION && !grid_.isHole(column, row)) {
+        const glm::vec3 p = grid_.position(column, row);
+        return textureCoordinates_->get(unit, SbVec3f(p.x, p.y, p.z), normal(column, row));
     }
-    return SbVec2f(float(column) / float(grid_.columns() - 1), float(row) / float(grid_.rows() - 1));
+    return SbVec4f(float(column) / float(grid_.columns() - 1), float(row) / float(grid_.rows() - 1), 0.0f, 1.0f);
+}
+
+SbVec2f StateAttributes::textureCoordinate(int unit, int column, int row) const
+{
+    const SbVec4f four = wideTextureCoordinate(unit, column, row);
+    const float q = four[3] != 0.0f ? four[3] : 1.0f;
+    return SbVec2f(four[0] / q, four[1] / q);
+}
+
+bool StateAttributes::hasTextureFunction(int unit) const
+{
+    const auto type = textureCoordinates_->getType(unit);
+    return type == SoMultiTextureCoordinateElement::FUNCTION || type == SoMultiTextureCoordinateElement::TEXGEN;
 }
 
 bool StateAttributes::hasAffineTextureCoordinates(int unit) const
@@ -192,6 +209,13 @@ void StateAttributes::writeColour(int column, int row, std::uint8_t * out) const
     std::memcpy(out, bytes, sizeof bytes);
 }
 
+void StateAttributes::writeCoordinate(int unit, const SbVec4f & coordinate, std::uint8_t *& out) const
+{
+    const std::size_t bytes = (format_.isWide(unit) ? 4 : 2) * sizeof(float);
+    std::memcpy(out, coordinate.getValue(), bytes);
+    out += bytes;
+}
+
 void StateAttributes::write(std::uint32_t sample, std::uint8_t * out) const
 {
     const int column = int(sample % std::uint32_t(grid_.columns())), row = int(sample / std::uint32_t(grid_.columns()));
@@ -204,11 +228,7 @@ void StateAttributes::write(std::uint32_t sample, std::uint8_t * out) const
         writeColour(column, row, out);
         out += 4;
     }
-    for (const int unit : format_.textureUnits) {
-        const SbVec2f coordinate = textureCoordinate(unit, column, row);
-        std::memcpy(out, coordinate.getValue(), 2 * sizeof(float));
-        out += 2 * sizeof(float);
-    }
+    for (const int unit : format_.textureUnits) writeCoordinate(unit, wideTextureCoordinate(unit, column, row), out);
 }
 
 void StateAttributes::writeAt(glm::vec2 place, std::uint32_t nearest, std::uint8_t * out) const
@@ -237,10 +257,9 @@ void StateAttributes::writeAt(glm::vec2 place, std::uint32_t nearest, std::uint8
         out += 4;
     }
     for (const int unit : format_.textureUnits) {
-        SbVec2f sum(0.0f, 0.0f);
+        SbVec4f sum(0.0f, 0.0f, 0.0f, 0.0f);
         for (const Corner & corner : corners)
-            if (corner.weight > 0.0f) sum += textureCoordinate(unit, corner.column, corner.row) * corner.weight;
-        std::memcpy(out, sum.getValue(), 2 * sizeof(float));
-        out += 2 * sizeof(float);
+            if (corner.weight > 0.0f) sum += wideTextureCoordinate(unit, corner.column, corner.row) * corner.weight;
+        writeCoordinate(unit, sum, out);
     }
 }

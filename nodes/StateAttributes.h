@@ -7,6 +7,7 @@
 
 #include <Inventor/SbVec2f.h>
 #include <Inventor/SbVec3f.h>
+#include <Inventor/SbVec4f.h>
 
 #include "gl/TerrainRenderer.h"
 #include "height/SampleGrid.h"
@@ -39,7 +40,12 @@ public:
     bool hasOverallNormal() const { return needsNormals_ && !format_.normals; }
     bool hasExplicitNormals() const { return normalBinding_ != GENERATED; }
     SbVec3f normal(int column, int row) const;
+    /// (s, t, r, q): explicit, from a function of point and normal, or such that the texture spans the terrain.
+    SbVec4f wideTextureCoordinate(int unit, int column, int row) const;
+    /// (s, t) of it, divided by q.
     SbVec2f textureCoordinate(int unit, int column, int row) const;
+    /// Whether coordinates of the unit come from a function, GL's own or Coin's.
+    bool hasTextureFunction(int unit) const;
     /// Whether texture coordinates are a linear function of columns and rows, to within a thousandth of the texture.
     bool hasAffineTextureCoordinates(int unit) const;
     /// Index into the state's materials.
@@ -55,6 +61,7 @@ private:
     bool isEnough(const char * what, Binding binding, long found, const char * remedy);
     int boundIndex(Binding binding, int column, int row, int count) const;
     SbVec3f generatedNormal(int column, int row) const;
+    void writeCoordinate(int unit, const SbVec4f & coordinate, std::uint8_t *& out) const;
     void writeColour(int column, int row, std::uint8_t * out) const;
     void mix(std::uint64_t value) { version_ = (version_ ^ value) * 0x100000001b3ull; }
 

@@ -143,8 +143,9 @@ void TerrainRenderer::draw() const {
     for (const int unit : format_.textureUnits) {
         glClientActiveTexture(GLenum(GL_TEXTURE0 + unit));
         glEnableClientState(GL_TEXTURE_COORD_ARRAY);
-        glTexCoordPointer(2, GL_FLOAT, stride, offset(at));
-        at += 8;
+        const bool isWide = format_.isWide(unit);
+        glTexCoordPointer(isWide ? 4 : 2, GL_FLOAT, stride, offset(at));
+        at += isWide ? 16 : 8;
     }
     indices_.current().bind(GL_ELEMENT_ARRAY_BUFFER);
     const std::uint32_t faces = indexCount_ - seamCount_;

@@ -1,6 +1,7 @@
 // Draws any DrawList with plain vertex arrays under whatever GL state is current.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,13 +15,17 @@
 namespace terrain {
 
 /// What a vertex carries beside its position. Interleaved in this order: normal (three floats), colour (four
-/// bytes), then two floats for each texture unit.
+/// bytes), then for each texture unit two floats, or four (s, t, r, q).
 struct VertexFormat {
     bool normals = false;
     bool colours = false;
     std::vector<int> textureUnits;  ///< those that get explicit coordinates
+    std::vector<int> wideUnits;     ///< those among them that get four
 
-    std::size_t stride() const { return (normals ? 12u : 0u) + (colours ? 4u : 0u) + textureUnits.size() * 8u; }
+    bool isWide(int unit) const { return std::find(wideUnits.begin(), wideUnits.end(), unit) != wideUnits.end(); }
+    std::size_t stride() const {
+        return (normals ? 12u : 0u) + (colours ? 4u : 0u) + (textureUnits.size() + wideUnits.size()) * 8u;
+    }
     bool operator==(const VertexFormat&) const = default;
 };
 
