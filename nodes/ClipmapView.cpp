@@ -6,6 +6,8 @@
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/elements/SoGLShaderProgramElement.h>
 #include <Inventor/elements/SoMultiTextureEnabledElement.h>
+#include <Inventor/elements/SoMultiTextureMatrixElement.h>
+#include <Inventor/elements/SoTextureCombineElement.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoTerrainStatistics.h>
@@ -102,6 +104,18 @@ terrain::ClipmapShading::Texture textureModel()
     case GL_REPLACE: return alphaBits > 0 ? Shading::ReplaceAlpha : Shading::Replace;
     default: return Shading::Modulate;
     }
+}
+
+/// Whether unit 0 is to draw a decal of luminance, which is up to the driver.
+bool isUndefinedDecal()
+{
+    GLint active = 0, mode = 0, luminanceBits = 0;
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
+    glActiveTexture(GL_TEXTURE0);
+    glGetTexEnviv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, &mode);
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_LUMINANCE_SIZE, &luminanceBits);
+    glActiveTexture(GLenum(active));
+    return mode == GL_DECAL && luminanceBits > 0;
 }
 
 /// The program that GL's state asks for.
@@ -212,6 +226,35 @@ std::vector<terrain::GlName> ClipmapView::release()
     return renderer_.release();
 }
 
+namespace {
+
+/// Whether the matrix of unit 0 divides what it gives.
+bool hasProjectiveTextureMatrix(SoState * state)
+{
+    const SbMatrix & m = SoMultiTextureMatrixElement::get(state, 0);
+    return m[0][3] != 0.0f || m[1][3] != 0.0f || m[3][3] != 1.0f;
+}
+
+std::string whyNotTextured(const TerrainFrame & frame)
+{
+    SoState * state = frame.action->getState();
+    int last = -1;
+    const SbBool * enabled = SoMultiTextureEnabledElement::getEnabledUnits(state, last);
+    for (int unit = 1; unit <= last && enabled; ++unit)
+        if (enabled[unit]) return "texture unit " + std::to_string(unit) + " is in use";
+    const bool hasTexture = last >= 0 && enabled && enabled[0];
+    if (!hasTexture && !frame.texture.clipmap) return std::string();
+    if (frame.attributes.hasTextureFunction(0)) return "texture coordinates come from a function";
+    if (hasProjectiveTextureMatrix(state)) return "the texture matrix is a perspective one";
+    if (frame.texture.clipmap) return std::string();
+    if (SoMultiTextureEnabledElement::getMode(state, 0) != SoMultiTextureEnabledElement::TEXTURE2D) return "the texture is not two-dimensional";
+    if (!SoTextureCombineElement::isDefault(state, 0)) return "an SoTextureCombine is active";
+    if (isUndefinedDecal()) return "GL does not define DECAL for textures of one or two components";
+    return std::string();
+}
+
+}  // namespace
+
 std::string whyNotOnGpu(const TerrainFrame & frame, const terrain::ClipmapLayout & layout, bool isAffine)
 {
     SoState * state = frame.action->getState();
@@ -219,15 +262,8 @@ std::string whyNotOnGpu(const TerrainFrame & frame, const terrain::ClipmapLayout
     if (SoGLShaderProgramElement::get(state)) return "an SoShaderProgram is active";
     if (frame.attributes.format().colours) return "there is a material for each vertex, face or row";
     if (frame.attributes.hasOverallNormal()) return "there is one normal for all";
-    int last = -1;
-    const SbBool * enabled = SoMultiTextureEnabledElement::getEnabledUnits(state, last);
-    for (int unit = 1; unit <= last && enabled; ++unit)
-        if (enabled[unit]) return "texture unit " + std::to_string(unit) + " is in use";
-    if (last >= 0 && enabled && enabled[0] && !frame.texture.clipmap) {
-        if (SoMultiTextureEnabledElement::getMode(state, 0) != SoMultiTextureEnabledElement::TEXTURE2D) return "the texture is not two-dimensional";
-        if (frame.attributes.format().textureUnits.empty()) return "texture coordinates come from a function";
-    }
-    if (frame.texture.clipmap && frame.attributes.format().textureUnits.empty()) return "texture coordinates come from a function";
+    if (glIsEnabled(GL_FRAGMENT_PROGRAM_ARB)) return "the transparency type draws by a fragment program";
+    if (const std::string reason = whyNotTextured(frame); !reason.empty()) return reason;
     if (!isAffine) return "texture coordinates are no linear function of columns and rows";
     if (const auto missing = terrain::ClipmapRenderer::whatIsMissing(layout)) return missing->message();
     return std::string();
