@@ -68,6 +68,7 @@
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
 #include <Inventor/bundles/SoMaterialBundle.h>
+#include <Inventor/elements/SoCacheElement.h>
 #include <Inventor/elements/SoClipPlaneElement.h>
 #include <Inventor/elements/SoComplexityElement.h>
 #include <Inventor/elements/SoDepthBufferElement.h>
@@ -328,6 +329,8 @@ void SoTerrainShape::GLRender(SoGLRenderAction * action)
     if (!this->shouldGLRender(action)) return;
     // The mesh depends on the camera and lives in buffers: a display list around it would only be thrown away.
     SoGLCacheContextElement::shouldAutoCache(action->getState(), SoGLCacheContextElement::DONT_AUTO_CACHE);
+    // Nor is one to be recorded where renderCaching is ON: programs and textures of its own can't be.
+    SoCacheElement::invalidate(action->getState());
     pimpl->render(action);
 }
 
