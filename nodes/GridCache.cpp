@@ -37,9 +37,11 @@ Result<GridRequest> sizesFor(const GridRequest & request, long available, const 
         if (side * side != count)
             return Error{"verticesPerRow and verticesPerColumn", "sizes, because the samples make no square", text(count) + ' ' + what};
         sizes.verticesPerRow = sizes.verticesPerColumn = int(side);
+    } else if (sizes.verticesPerColumn == 0) {
+        sizes.verticesPerColumn = int(count / sizes.verticesPerRow);
+    } else if (sizes.verticesPerRow == 0) {
+        sizes.verticesPerRow = int(count / sizes.verticesPerColumn);
     }
-    if (sizes.verticesPerColumn == 0) sizes.verticesPerColumn = int(count / sizes.verticesPerRow);
-    if (sizes.verticesPerRow == 0) sizes.verticesPerRow = int(count / sizes.verticesPerColumn);
     if (sizes.verticesPerRow < 2 || sizes.verticesPerColumn < 2)
         return Error{"terrain", "at least 2 x 2 samples", text(sizes.verticesPerRow) + " x " + text(sizes.verticesPerColumn) + " of " +
                      text(count) + ' ' + what};

@@ -135,6 +135,15 @@ TEST_P(BadInput, TooFewCoordinatesAreCounted) {
     EXPECT_EQ(covered_, 0);
 }
 
+TEST_P(BadInput, NoCoordinatesFromTheStartOnAreCounted) {
+    for (const int start : {16, 17, INT_MAX}) {
+        SoTerrainShape* shape = node(0, 0);
+        shape->startIndex = start;
+        expectOneMessage(shape, {coordinates(16)}, {"0 coordinates"});
+        EXPECT_EQ(covered_, 0);
+    }
+}
+
 TEST_P(BadInput, NoSquareOfCoordinatesIsCounted) {
     expectOneMessage(node(0, 0), {coordinates(15)}, {"15"});
     EXPECT_EQ(covered_, 0);
