@@ -111,7 +111,9 @@ void evaluateLanes(const Lanes& b, const std::uint16_t* code, const EvaluationRe
         const float margin = toSplit > 0.0f ? toSplit : toMove > 0.0f && priority[i] > full ? toMove : 0.0f;
         const float lasting = margin > 0.0f ? margin / (depth.shift + depth.turn * distance) : 0.0f;
         const float priorityFrames = outside[i] > 0.0f ? kInfinity : lasting;
-        frames[i] = error[i] == 0.0f ? kInfinity : labelFrames < priorityFrames ? labelFrames : priorityFrames;
+        const float fewer = labelFrames < priorityFrames ? labelFrames : priorityFrames;
+        // What is no number, because coordinates or the camera are beyond floats, does not last either.
+        frames[i] = error[i] == 0.0f ? kInfinity : fewer > 0.0f ? fewer : 0.0f;
     }
 }
 
@@ -162,7 +164,7 @@ std::size_t RoamBounds::append() {
 RoamBounds::RoamBounds(bool regular, const BoxPyramid::Bounds& all) : regular_(regular) {
     if (all.isEmpty()) return;
     heightBase_ = all.low.z;
-    heightStep_ = (all.high.z - all.low.z) / 65535.0f;
+    heightStep_ = float((double(all.high.z) - double(all.low.z)) / 65535.0);
 }
 
 void RoamBounds::set(std::size_t number, glm::ivec2 centre, int size, const BoxPyramid::Bounds& bounds, float error) {
@@ -177,8 +179,10 @@ void RoamBounds::set(std::size_t number, glm::ivec2 centre, int size, const BoxP
     reach_[number] = std::uint16_t(size);
     lowest_[number] = highest_[number] = 0;
     if (bounds.isEmpty() || !(heightStep_ > 0.0f)) return;
-    lowest_[number] = std::uint16_t(std::clamp(std::floor((bounds.low.z - heightBase_) / heightStep_), 0.0f, 65535.0f));
-    highest_[number] = std::uint16_t(std::clamp(std::ceil((bounds.high.z - heightBase_) / heightStep_), 0.0f, 65535.0f));
+    // In doubles, because heights may span more than a float holds.
+    const auto steps = [this](float height) { return (double(height) - double(heightBase_)) / double(heightStep_); };
+    lowest_[number] = std::uint16_t(std::clamp(std::floor(steps(bounds.low.z)), 0.0, 65535.0));
+    highest_[number] = std::uint16_t(std::clamp(std::ceil(steps(bounds.high.z)), 0.0, 65535.0));
 }
 
 void RoamBounds::clear(std::size_t number) {
