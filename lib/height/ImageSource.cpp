@@ -114,6 +114,24 @@ bool pngEnds(const std::string& path) {
     return false;
 }
 
+std::string sizeText(int width, int height, int depth) {
+    return std::to_string(width) + "x" + std::to_string(height) + "x" + std::to_string(depth);
+}
+
+/// Whether an image of such a size has texels, and not more tiles than an int counts, be they its own or of 64 x 64 texels. Its full size, of
+/// which the texels are a window, counts as well: coarser levels that a cache makes are of that.
+bool isSized(const OIIO::ImageSpec& spec) {
+    constexpr std::int64_t least = 64, most = std::int64_t(1) << 30;
+    if (spec.width < 1 || spec.height < 1 || spec.depth < 1 || spec.nchannels < 1) return false;
+    if (spec.tile_width < 0 || spec.tile_height < 0 || spec.tile_depth < 0) return false;
+    const auto tiles = [](std::int64_t length, std::int64_t side) { return side > 0 ? (length + side - 1) / side : 1; };
+    const auto count = [&](int width, int height, int depth) {
+        const std::int64_t area = tiles(std::max(spec.width, spec.full_width), width) * tiles(std::max(spec.height, spec.full_height), height);
+        return area < most ? area * tiles(spec.depth, depth) : most;
+    };
+    return count(least, least, 1) < most && (spec.tile_width == 0 || count(spec.tile_width, spec.tile_height, spec.tile_depth) < most);
+}
+
 /// Reads `count` rows of one channel, counted from the top, as `type`.
 bool readRows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel, OIIO::TypeDesc type, int firstRow, int count,
               void* rows) {
@@ -164,6 +182,17 @@ bool imageEnds(const std::string& path, std::string_view format) {
     return format == "jpeg" ? jpegEnds(path) : format != "png" || pngEnds(path);
 }
 
+std::optional<std::string> whyNotSized(const std::string& path) {
+    const auto input = openInput(path);
+    if (!input) return reason(OIIO::geterror());
+    for (int image = 0; input->seek_subimage(image, 0); ++image)
+        for (int level = 0; input->seek_subimage(image, level); ++level)
+            if (const OIIO::ImageSpec spec = input->spec(); !isSized(spec))
+                return sizeText(spec.width, spec.height, spec.depth) + " texels of " + sizeText(spec.full_width, spec.full_height, spec.full_depth) +
+                       ", tiles of " + sizeText(spec.tile_width, spec.tile_height, spec.tile_depth);
+    return std::nullopt;
+}
+
 Result<HeightMap> readImage(const std::string& path, const HeightFileOptions& options) {
     const auto input = openInput(path);
     if (!input) return Error{path, "an image that OpenImageIO reads", reason(OIIO::geterror())};
@@ -190,6 +219,10 @@ bool imageEnds(const std::string&, std::string_view) {
 }
 
 std::optional<std::string> whyNotAnImage(const std::string&) {
+    return "this build lacks OpenImageIO";
+}
+
+std::optional<std::string> whyNotSized(const std::string&) {
     return "this build lacks OpenImageIO";
 }
 

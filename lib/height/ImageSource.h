@@ -21,6 +21,10 @@ std::optional<std::string> whyNotAnImage(const std::string& path);
 /// fill in what is missing, or leak memory.
 bool imageEnds(const std::string& path, std::string_view format);
 
+/// What is wrong with the sizes that the file states for its images and their levels, in words; nothing when they can be. OpenImageIO's cache
+/// ends the program over some that can't.
+std::optional<std::string> whyNotSized(const std::string& path);
+
 /// Reads one channel of an image: `options.channel`, or the first one of a grey image with or without alpha.
 ///
 /// Samples keep their values: 255 of 8 bits is 255, 65535 of 16 bits is 65535, floats are as they are, alpha is not multiplied in.

@@ -46,6 +46,7 @@ struct TiledImage::Cache {
 TiledImage::TiledImage() : cache_(std::make_unique<Cache>()) {}
 
 Result<std::shared_ptr<const TiledImage>> TiledImage::open(const std::string& path, int memoryMegabytes) {
+    if (const auto problem = whyNotSized(path)) return Error{path, "an image that OpenImageIO reads", *problem};
     std::shared_ptr<TiledImage> image(new TiledImage);
     image->path_ = path;
     Cache& cache = *image->cache_;

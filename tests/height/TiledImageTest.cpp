@@ -200,6 +200,25 @@ TEST_F(TiledImages, ThatEndTooEarlyAreAnError) {
     }
 }
 
+TEST_F(TiledImages, OfSizesThatNothingCanHaveAreAnError) {
+    // A DPX file states the size of the original, of which the picture may be a part. OpenImageIO's cache ends the program over this one.
+    const auto output = OIIO::ImageOutput::create(path("part.dpx"));
+    if (!output) GTEST_SKIP() << "OpenImageIO without DPX";
+    const std::vector<std::uint8_t> texels(19 * 17 * 3, 100);
+    ASSERT_TRUE(output->open(path("part.dpx"), OIIO::ImageSpec(19, 17, 3, OIIO::TypeDesc::UINT8)));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, texels.data()));
+    output->close();
+    ASSERT_TRUE(open("part.dpx"));
+    std::fstream file(path("part.dpx"), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(1424);
+    const std::string size(4, '\x7f');
+    file << size << size;
+    file.close();
+    const auto opened = TiledImage::open(path("part.dpx"), 16);
+    ASSERT_FALSE(opened);
+    EXPECT_NE(opened.error().message().find("19x17x1 texels of 2139062143x2139062143x1"), std::string::npos) << opened.error().message();
+}
+
 TEST_F(TiledImages, RefuseWhatLiesOutside) {
     writeLevels(path("small.tif"), {texelsOf(100, 50, 3, placeTexel)}, 0);
     const auto image = open("small.tif");
