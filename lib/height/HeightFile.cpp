@@ -29,8 +29,8 @@ Result<HeightMapBuilder> HeightMapBuilder::create(const std::string& path, std::
     const std::string size = std::to_string(columns) + " x " + std::to_string(rows);
     if (columns < 2 || rows < 2) return Error{path, "at least 2 x 2 samples", size};
     constexpr std::int64_t longest = std::numeric_limits<int>::max();
-    if (columns > longest || rows > longest || std::uint64_t(columns) * std::uint64_t(rows) > maximumSamples)
-        return Error{path, "at most " + std::to_string(maximumSamples) + " samples, and " + std::to_string(longest) + " a side",
+    if (columns > longest || rows > longest || std::uint64_t(columns) * std::uint64_t(rows) > options.maximumSamples)
+        return Error{path, "at most " + std::to_string(options.maximumSamples) + " samples, and " + std::to_string(longest) + " a side",
                      size};
     HeightMapBuilder builder;
     builder.map_.columns = int(columns);

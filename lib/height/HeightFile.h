@@ -21,12 +21,9 @@ Result<int> chooseChannel(const std::string& path, int channelCount, const Heigh
 /// `options.samplesInMemory`, fills as rows arrive, so that a header that promises more than the file holds costs nothing.
 class HeightMapBuilder {
 public:
-    /// Error: fewer than 2 x 2 samples, more than fit (`maximumSamples`, or an int per side), or no scratch space for them.
+    /// Error: fewer than 2 x 2 samples, more than fit (`options.maximumSamples`, or an int per side), or no scratch space for them.
     static Result<HeightMapBuilder> create(const std::string& path, std::int64_t columns, std::int64_t rows,
                                            const HeightFileOptions& options);
-
-    /// Largest map that is read: 2^34 samples, 64 GiB.
-    static constexpr std::uint64_t maximumSamples = std::uint64_t(1) << 34;
 
     /// Scaling and no-data that the file states itself; the options' scaling comes after the file's.
     void setFileScale(double scale, double offset);

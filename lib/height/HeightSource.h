@@ -76,6 +76,8 @@ struct HeightFileOptions {
     /// A map of more samples than these (256 MiB) is decoded into scratch space on disk, 4 bytes each: an unnamed file in the
     /// directory for temporary files (TMPDIR), of which only what is looked at takes memory.
     std::uint64_t samplesInMemory = std::uint64_t(1) << 26;
+    /// A file that holds, or only promises, more samples than these is an error: 64 GiB of heights, or less for who is in a hurry.
+    std::uint64_t maximumSamples = std::uint64_t(1) << 34;
 };
 
 /// Opens any file this build can read: ".raw" by rawSize and rawType, GDAL's georeferenced rasters, images by OpenImageIO.
