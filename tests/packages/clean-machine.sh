@@ -67,6 +67,8 @@ new_machine() {
     printf '#!/bin/sh\nexit 101\n' >"$machine/usr/sbin/policy-rc.d"
     chmod +x "$machine/usr/sbin/policy-rc.d"
     cp /etc/resolv.conf /etc/hosts "$machine/etc/"
+    # Nothing here has to outlive a power cut.
+    echo force-unsafe-io >"$machine/etc/dpkg/dpkg.cfg.d/unsafe-io"
     apt-config dump Acquire | grep -iE '::(proxy|check-valid-until|check-date) ' >"$machine/etc/apt/apt.conf.d/00host"
     printf '%s\n' "deb $mirror bookworm main" "deb $mirror bookworm-updates main" \
         "deb ${SECURITY_MIRROR:-${mirror%/debian}/debian-security} bookworm-security main" >"$machine/etc/apt/sources.list"
