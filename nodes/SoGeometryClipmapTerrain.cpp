@@ -101,6 +101,14 @@
   AUTO, the default, draws by vertex textures where it can, and else by vertex arrays. CPU always takes vertex arrays; GPU warns where it has to.
 */
 /*!
+  \enum SoGeometryClipmapTerrain::Implementation
+  How levels are drawn: GPU by textures that the vertex shader reads; CPU by vertex arrays; AUTO by whichever the state allows, the GPU first.
+*/
+/*!
+  \enum SoGeometryClipmapTerrain::Storage
+  What the GPU keeps: STORED every level, MEMORY_FREE two of them.
+*/
+/*!
   \var SoSFEnum SoGeometryClipmapTerrain::storage
   STORED, the default, keeps a texture layer for each level. MEMORY_FREE keeps two, and makes all levels anew in each frame; the picture is the same.
 */

@@ -52,15 +52,23 @@
 
 /*!
   \var SoSFString SoHeightMap::filename
-  Image, raster or raw file. Empty: no height map.
+  Image, raster or raw file. Empty, the default: no height map.
 */
 /*!
   \var SoSFVec2f SoHeightMap::spacing
   Distance between columns and between rows. (0, 0), the default, is what the file says, or (1, 1).
 */
 /*!
+  \var SoSFFloat SoHeightMap::heightScale
+  Factor on the samples: height = heightOffset + heightScale * sample. Default 1.
+*/
+/*!
+  \var SoSFFloat SoHeightMap::heightOffset
+  Height of a sample of 0. Default 0.
+*/
+/*!
   \var SoSFVec2f SoHeightMap::origin
-  Position of the south-west sample. The origin of a georeferenced file is not used unless it is given here: local coordinates are
+  Position of the south-west sample, (0, 0) by default. The origin of a georeferenced file is not used unless it is given here: local coordinates are
   single precision, and scenes do well to start near zero.
 */
 /*!
@@ -70,6 +78,14 @@
 /*!
   \var SoSFVec2i32 SoHeightMap::rawSize
   Columns and rows of a headerless file. (0, 0), the default, is a square of the size that the file's length gives.
+*/
+/*!
+  \var SoSFEnum SoHeightMap::rawType
+  Type of the samples of a headerless file, a RawType. Default UINT8.
+*/
+/*!
+  \enum SoHeightMap::RawType
+  Samples of a headerless file: UINT8 of one byte; UINT16_LITTLE_ENDIAN of two bytes, the lower one first; UINT16_BIG_ENDIAN, the higher one first.
 */
 /*!
   \var SoSFFloat SoHeightMap::noData

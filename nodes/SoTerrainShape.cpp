@@ -17,7 +17,9 @@
   face or row that begins at it. SoDrawStyle, SoComplexity, SoShapeHints, lights, fog, clip planes, several texture units and
   shader programs act as on any Coin shape: vertices are the samples themselves, drawn from plain vertex arrays.
 
-  pixelError is a promise: no sample of the terrain that is in view is drawn further from where it belongs than that many pixels.
+  pixelError is a promise: no sample of the terrain that is in view is drawn further from where it belongs than that many pixels. Where a
+  limit of a node (SoROAMTerrain::triangleCount, budgets) stops short of it, and in SoGeometryClipmapTerrain, whose grids have the size that
+  was chosen (unless SoGeometryClipmapTerrain::clipmapSize is 0), SoTerrainStatistics::errorPixels tells the bound that holds instead.
 
   Picking is exact: it meets the full-resolution triangles whatever is on screen, and gives an SoTerrainDetail. So do bounding box and
   primitives.
@@ -30,16 +32,16 @@
 */
 /*!
   \var SoSFInt32 SoTerrainShape::verticesPerColumn
-  Samples of a column, likewise.
+  Samples of a column, likewise 0 by default: all rows of the height map.
 */
 /*!
   \var SoSFInt32 SoTerrainShape::startIndex
-  Index of the first sample. As in SoQuadMesh, normals, materials and texture coordinates are counted from 0 all the same.
+  Index of the first sample, by default 0. As in SoQuadMesh, normals, materials and texture coordinates are counted from 0 all the same.
 */
 /*!
   \var SoSFFloat SoTerrainShape::pixelError
   Largest distance on screen, in pixels of the viewport region, between where any sample in view is drawn and where it belongs. 0 is full
-  detail. Default 2. SoComplexity changes it: a value of 0.5 leaves it, each 0.25 more halves it and each 0.25 less doubles it.
+  detail. SoGeometryClipmapTerrain reports its bound instead of keeping this one, unless its clipmapSize is 0. Default 2. SoComplexity changes it: a value of 0.5 leaves it, each 0.25 more halves it and each 0.25 less doubles it.
 */
 /*!
   \var SoSFBool SoTerrainShape::frustumCulling
@@ -51,7 +53,7 @@
 */
 /*!
   \var SoSFNode SoTerrainShape::alternateRep
-  What a program without this library shows in place of the node. Not used by the node itself.
+  What a program without this library shows in place of the node. Not used by the node itself. Default NULL.
 */
 
 // epoxy must come before any other GL header, and Coin's headers bring theirs.

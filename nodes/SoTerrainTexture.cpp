@@ -48,7 +48,7 @@
 
 /*!
   \var SoSFString SoTerrainTexture::filename
-  Image file. Empty: no texture.
+  Image file. Empty, the default: no texture.
 */
 /*!
   \var SoSFInt32 SoTerrainTexture::clipSize

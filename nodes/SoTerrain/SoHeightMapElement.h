@@ -18,7 +18,9 @@ public:
     static void initClass();
 
     virtual void init(SoState * state);
+    /// Makes \a source the height map of what follows, in the name of \a node. NULL: none; \a failed tells why.
     static void set(SoState * state, SoNode * node, const terrain::HeightSource * source, SbBool failed);
+    /// The element of this traversal, which must have it enabled.
     static const SoHeightMapElement * getInstance(SoState * state);
     /// NULL where no node has set one, or its file could not be read.
     const terrain::HeightSource * getSource() const;

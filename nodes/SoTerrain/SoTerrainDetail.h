@@ -18,13 +18,16 @@ public:
     static void initClass();
     virtual SoDetail * copy() const;
 
+    /// Column of the cell: that of its first sample, from 0.
     int getColumn() const { return this->column; }
+    /// Row of the cell, likewise.
     int getRow() const { return this->row; }
     /// 0: the triangle at the cell's first sample; 1: the one at its last.
     int getTriangle() const { return this->triangle; }
     /// Along the axis of the node's coordinates that heights run along (z for curved grids).
     float getHeight() const { return this->height; }
 
+    /// Called by the node that was picked.
     void setCell(int column, int row, int triangle, float height);
 
 private:

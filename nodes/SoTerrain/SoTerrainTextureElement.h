@@ -21,8 +21,10 @@ public:
     static void initClass();
 
     virtual void init(SoState * state);
+    /// Makes \a image the texture of the terrain nodes that follow, in the name of \a node. The rest are the fields of SoTerrainTexture.
     static void set(SoState * state, SoNode * node, const std::shared_ptr<const terrain::TiledImage> & image, int clipSize,
                     uint32_t updateBudget);
+    /// The element of this traversal, which must have it enabled.
     static const SoTerrainTextureElement * getInstance(SoState * state);
     /// NULL where no node has set one, or its file could not be read.
     const std::shared_ptr<const terrain::TiledImage> & getImage() const;
