@@ -6,8 +6,8 @@ listed=$(grep -oE '[A-Za-z0-9_./-]+' Makefile.am | sort -u)
 failed=0
 while read -r file; do
     grep -qxF "$file" <<<"$listed" || { echo "$file is not in Makefile.am"; failed=1; }
-done < <(find lib nodes apps tests data examples man cmake debian -type f ! -name '.*' ! -name '*~' ! -name '*.o' ! -name '*.lo' ! -name '*.log' ! -name '*.trs' ! -name 'test_[a-z]*' ! -name 'fuzz_[a-z]*' \
-    ! -path 'examples/*/build/*' ! -path '*/__pycache__/*' ! -path 'tests/pictures/*' ! -path 'cmake/*.cmake' ! -path 'debian/tmp/*' ! -path 'debian/.*' ! -path 'debian/*soterrain*/*' \
+done < <(find lib nodes apps tests data docs examples man cmake debian -type f ! -name '.*' ! -name '*~' ! -name '*.o' ! -name '*.lo' ! -name '*.log' ! -name '*.trs' ! -name 'test_[a-z]*' ! -name 'fuzz_[a-z]*' \
+    ! -path 'docs/html/*' ! -path 'docs/xml/*' ! -name Doxyfile ! -path 'examples/*/build/*' ! -path '*/__pycache__/*' ! -path 'tests/pictures/*' ! -path 'cmake/*.cmake' ! -path 'debian/tmp/*' ! -path 'debian/.*' ! -path 'debian/*soterrain*/*' \
     ! -name '*.substvars' ! -name '*debhelper*' ! -name files | sort)
 for document in README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md data/README.md; do
     while read -r link; do
