@@ -19,9 +19,9 @@ GROUPS = {
     "lib/lod": "inside_lod",
     "lib/gl": "inside_gl",
 }
-COIN = ("affectsState audioRender callback computeBBox copy copyContents copyFieldValues createInstance doAction generatePrimitives "
+COIN = ("addWriteReference affectsState audioRender callback computeBBox copy copyContents copyFieldValues createInstance doAction generatePrimitives "
         "getBoundingBox getMatrix getPrimitiveCount GLRender GLRenderBelowPath GLRenderInPath GLRenderOffPath getChildren handleEvent init "
-        "initClass matches copyMatchInfo notify pick rayPick readInstance search setDefaultOnNonWritingFields write").split()
+        "initClass matches copyMatchInfo notify pick rayPick readInstance search setDefaultOnNonWritingFields setPart write").split()
 
 
 def slug(heading):

@@ -101,9 +101,9 @@
   <b>FILE FORMAT/DEFAULTS:</b>
   \code
     SoTerrainKit {
+      callbackList NULL
       algorithm ROAM
       alternateRep NULL
-      callbackList NULL
       pickStyle NULL
       lightModel NULL
       environment NULL
@@ -146,7 +146,7 @@
 */
 /*!
   \var SoSFNode SoTerrainKit::alternateRep
-  What a program without this library shows in place of the kit. Not used by the kit itself.
+  What a program without this library shows in place of the kit. Not used by the kit itself. Default NULL.
 */
 
 #include <SoTerrain/SoTerrainKit.h>

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Usage: nodes.sh BUILD      makes heightmap.png and texture.png beside it, with SoTerrainTest of that build and ImageMagick
+# Usage: nodes.sh BUILD      makes heightmap.png, kit.png and texture.png beside it, with SoTerrainTest of that build and ImageMagick
 set -eu
 pictures=$(cd "$(dirname "$0")" && pwd)
 data=$pictures/../../data
@@ -27,6 +27,21 @@ SCENE
 scene white "position 150 40 160 orientation 1 -0.18 -0.06 1.25" ""
 convert "$data/terrain.png" -depth 8 -resize 360x360 "$scratch/grey.png"
 convert "$scratch/grey.png" "$scratch/white.png" +append -colors 96 PNG8:"$pictures/heightmap.png"
+
+cat >"$scratch/kit.iv" <<SCENE
+#Inventor V2.1 ascii
+Separator {
+  PerspectiveCamera { position 150 40 160 orientation 1 -0.18 -0.06 1.25 nearDistance 1 farDistance 3000 heightAngle 0.7 }
+  DirectionalLight { direction 0.5 0.5 -1 }
+  SoTerrainKit {
+    algorithm CHUNKED_LOD
+    heightMap SoHeightMap { filename "$data/terrain.png" heightScale 0.0011 }
+    texture Texture2 { filename "$data/terrain_texture.jpg" }
+  }
+}
+SCENE
+"$build/SoTerrainTest" --scene "$scratch/kit.iv" --offscreen=480x360 --output "$scratch/kit.png"
+convert "$scratch/kit.png" -colors 96 PNG8:"$pictures/kit.png"
 
 texture="SoTerrainTexture { filename \"$data/terrain_texture.jpg\" clipSize 256 }"
 scene above "position 512 512 1500 orientation 1 0 0 0" "$texture"

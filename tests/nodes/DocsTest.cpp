@@ -17,6 +17,8 @@
 #include <Inventor/fields/SoSFNode.h>
 #include <Inventor/fields/SoSFUInt32.h>
 #include <Inventor/lists/SoFieldList.h>
+#include <Inventor/nodekits/SoBaseKit.h>
+#include <Inventor/nodekits/SoNodekitCatalog.h>
 
 namespace {
 
@@ -53,13 +55,25 @@ std::vector<std::string> documented(const std::string& className) {
     at = text.find(className + " {\n", at);
     if (at == std::string::npos) return lines;
     std::istringstream rest(text.substr(text.find('\n', at) + 1));
-    for (std::string line; std::getline(rest, line) && line.find('}') == std::string::npos;)
+    for (std::string line; std::getline(rest, line) && line != "    }";)
         lines.push_back(std::regex_replace(line, std::regex("^\\s+|\\s+$"), ""));
     return lines;
 }
 
-/// The same of a new node: its fields in the order in which they are written, with their defaults. A part of a kit is NULL in the
-/// documentation as in Coin's own, whatever the kit makes of it; and numbers are decimal.
+std::string nameOf(const SoNode* node) {
+    return node ? std::string(node->getTypeId().getName().getString()) + " { }" : "NULL";
+}
+
+/// Parts of a kit that nobody sets by name.
+bool isPrivatePart(SoNode* node, const SbName& name) {
+    if (!node->isOfType(SoBaseKit::getClassTypeId())) return false;
+    const SoNodekitCatalog* catalog = static_cast<SoBaseKit*>(node)->getNodekitCatalog();
+    const int part = catalog->getPartNumber(name);
+    return part > 0 && !catalog->isPublic(part);
+}
+
+/// The same of a new node: its fields in the order in which they are written, with their defaults; numbers are decimal. A node that
+/// a kit makes is as it is written, "Class { }".
 std::vector<std::string> actual(SoNode* node) {
     std::vector<std::string> lines;
     SoFieldList fields;
@@ -67,10 +81,11 @@ std::vector<std::string> actual(SoNode* node) {
     for (int i = 0; i < fields.getLength(); ++i) {
         SbName name;
         node->getFieldName(fields[i], name);
+        if (isPrivatePart(node, name)) continue;
         SbString value;
         fields[i]->get(value);
         std::string text = value.getString();
-        if (fields[i]->isOfType(SoSFNode::getClassTypeId())) text = "NULL";
+        if (fields[i]->isOfType(SoSFNode::getClassTypeId())) text = nameOf(static_cast<SoSFNode*>(fields[i])->getValue());
         if (fields[i]->isOfType(SoSFUInt32::getClassTypeId())) text = std::to_string(static_cast<SoSFUInt32*>(fields[i])->getValue());
         if (text == "nan" || text == "-nan") text = "NaN";
         lines.push_back(std::string(name.getString()) + " " + text);
