@@ -68,7 +68,7 @@
 */
 /*!
   \var SoMFVec2f SoTerrainDrape::point
-  (x, y) in the local coordinates of the terrain; where heights run along another axis, the other two in order.
+  (x, y) in the local coordinates of the terrain; where heights run along another axis, the other two in order. None by default.
 */
 /*!
   \var SoMFInt32 SoTerrainDrape::numVertices
@@ -99,11 +99,19 @@
 */
 /*!
   \var SoSFInt32 SoTerrainDrape::verticesPerRow
-  As in SoTerrainShape, to be given the same values; so are verticesPerColumn and startIndex.
+  Samples of a row, as in SoTerrainShape, to be given the same value. Default 0.
+*/
+/*!
+  \var SoSFInt32 SoTerrainDrape::verticesPerColumn
+  Samples of a column, likewise. Default 0.
+*/
+/*!
+  \var SoSFInt32 SoTerrainDrape::startIndex
+  Index of the first sample, likewise. Default 0.
 */
 /*!
   \var SoSFNode SoTerrainDrape::alternateRep
-  What a program without this library shows in place of the node. Not used by the node itself.
+  What a program without this library shows in place of the node. Not used by the node itself. Default NULL.
 */
 
 // epoxy must come before any other GL header, and Coin's headers bring theirs.

@@ -132,8 +132,8 @@
 
 /*!
   \enum SoTerrainKit::Algorithm
-  The classes that the part terrain may be of: SoROAMTerrain, SoChunkedLoDTerrain, SoGeoMipmapTerrain, SoGeometryClipmapTerrain,
-  SoBruteForceTerrain, or any OTHER SoTerrainShape.
+  The class of the part terrain: ROAM is SoROAMTerrain, CHUNKED_LOD SoChunkedLoDTerrain, GEO_MIPMAP SoGeoMipmapTerrain, GEOMETRY_CLIPMAP
+  SoGeometryClipmapTerrain, BRUTE_FORCE SoBruteForceTerrain, and OTHER any other SoTerrainShape.
 */
 /*!
   \var SoSFEnum SoTerrainKit::algorithm

@@ -87,6 +87,7 @@ std::vector<std::string> actual(SoNode* node) {
         std::string text = value.getString();
         if (fields[i]->isOfType(SoSFNode::getClassTypeId())) text = nameOf(static_cast<SoSFNode*>(fields[i])->getValue());
         if (fields[i]->isOfType(SoSFUInt32::getClassTypeId())) text = std::to_string(static_cast<SoSFUInt32*>(fields[i])->getValue());
+        if (text == "[  ]") text = "[ ]";
         if (text == "nan" || text == "-nan") text = "NaN";
         lines.push_back(std::string(name.getString()) + " " + text);
     }
@@ -109,7 +110,7 @@ TEST_P(ClassDocs, ListTheFieldsInOrderWithTheirDefaults) {
 /// "Default 2." or the like stands in the text of each field that the class adds itself; so it can't say another number than the block.
 TEST_P(ClassDocs, NameTheDefaultOfEachFieldOfTheirOwn) {
     const std::string text = read(sourceFolder() + "/nodes/" + GetParam() + ".cpp");
-    const std::regex entry("\\\\var SoSF\\w+ " + GetParam() + "::(\\w+)\n((?:(?!\\*/)[^])*?)\\*/");
+    const std::regex entry("\\\\var So[SM]F\\w+ " + GetParam() + "::(\\w+)\n((?:(?!\\*/)[^])*?)\\*/");
     int entries = 0;
     for (std::sregex_iterator i(text.begin(), text.end(), entry), end; i != end; ++i) {
         ++entries;
