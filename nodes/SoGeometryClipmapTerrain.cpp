@@ -183,19 +183,32 @@ public:
     /// Whether texture coordinates are affine, looked at again only when something of the state has changed.
     bool isAffine(const TerrainFrame & frame)
     {
-        if (affineVersion != frame.attributes.version() || affineGrid.lock() != frame.data.model.boxes) {
-            affine = frame.attributes.hasAffineTextureCoordinates(0);
-            affineVersion = frame.attributes.version();
-            affineGrid = frame.data.model.boxes;
-        }
+        lookAt(frame);
         return affine;
+    }
+
+    /// Whether normals are those of the ground, likewise.
+    bool hasNormalsOfSurface(const TerrainFrame & frame)
+    {
+        lookAt(frame);
+        return followsSurface;
     }
 
     SoGeometryClipmapTerrain * master;
     ClipmapTables tables;
 
 private:
-    bool affine = false;
+    void lookAt(const TerrainFrame & frame)
+    {
+        if (affineVersion != frame.attributes.version() || affineGrid.lock() != frame.data.model.boxes) {
+            affine = frame.attributes.hasAffineTextureCoordinates(0);
+            followsSurface = frame.attributes.hasNormalsOfSurface();
+            affineVersion = frame.attributes.version();
+            affineGrid = frame.data.model.boxes;
+        }
+    }
+
+    bool affine = false, followsSurface = false;
     std::uint64_t affineVersion = 0;
     std::weak_ptr<const terrain::BoxPyramid> affineGrid;
 };
@@ -285,8 +298,9 @@ SbBool SoGeometryClipmapTerrain::renderOwn(const TerrainFrame & frame, SoTerrain
                                                     : terrain::smallestClipmap(grid, *frame.data.model.boxes, errors.get(), frame.camera, options.shape,
                                                                                options.settings, view ? view->shape().size : 0);
 
-    const std::string reason = whyNotOnGpu(frame, terrain::ClipmapLayout(grid.columns(), grid.rows(), options.shape),
+    std::string reason = whyNotOnGpu(frame, terrain::ClipmapLayout(grid.columns(), grid.rows(), options.shape),
                                            clipmaps->isAffine(frame));
+    if (reason.empty() && !clipmaps->hasNormalsOfSurface(frame)) reason = "normals are not those of the ground";
     if (!reason.empty()) {
         if (this->implementation.getValue() == GPU)
             warnOnce(("implementation GPU: expected what vertex textures can draw, but " + reason + "; vertex arrays are used").c_str());

@@ -139,6 +139,20 @@ SbVec3f StateAttributes::normal(int column, int row) const
     return normals_[boundIndex(normalBinding_, column, row, normalCount_)];
 }
 
+bool StateAttributes::hasNormalsOfSurface() const
+{
+    if (!needsNormals_ || normalBinding_ == GENERATED) return true;
+    constexpr float kLeastCosine = 0.98f;
+    for (int row = 0; row < grid_.rows(); ++row)
+        for (int column = 0; column < grid_.columns(); ++column) {
+            if (grid_.isHole(column, row)) continue;
+            SbVec3f explicitNormal = normal(column, row);
+            explicitNormal.normalize();
+            if (!(explicitNormal.dot(generatedNormal(column, row)) >= kLeastCosine)) return false;
+        }
+    return true;
+}
+
 SbVec4f StateAttributes::wideTextureCoordinate(int unit, int column, int row) const
 {
     const std::size_t index = grid_.index(column, row);

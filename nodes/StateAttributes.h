@@ -40,6 +40,8 @@ public:
     bool hasOverallNormal() const { return needsNormals_ && !format_.normals; }
     bool hasExplicitNormals() const { return normalBinding_ != GENERATED; }
     SbVec3f normal(int column, int row) const;
+    /// Whether explicit normals, if there are any and lighting is on, are those of the surface to within some ten degrees.
+    bool hasNormalsOfSurface() const;
     /// (s, t, r, q): explicit, from a function of point and normal, or such that the texture spans the terrain.
     SbVec4f wideTextureCoordinate(int unit, int column, int row) const;
     /// (s, t) of it, divided by q.
