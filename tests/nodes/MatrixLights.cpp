@@ -1,7 +1,26 @@
 // Lights, light models, fog and normals of the matrix.
 #include "Matrix.h"
 
+#include <cmath>
+
 namespace test::matrix {
+
+namespace {
+
+/// Normals that turn softly over a grid.
+std::string slopes(int columns, int rows) {
+    std::string text = "Normal { vector [ ";
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            SbVec3f normal(std::sin(0.2f * float(column)), 0.6f * std::sin(0.25f * float(row)), 1.0f);
+            normal.normalize();
+            for (int i = 0; i < 3; ++i) text += std::to_string(normal[i]) + ' ';
+            text += ", ";
+        }
+    return text + "] }\n";
+}
+
+}  // namespace
 
 Group lights() {
     const std::string spot =
@@ -45,6 +64,19 @@ Group lights() {
     rows.push_back({.name = "NormalBinding OVERALL",
                     .iv = "NormalBinding { value OVERALL }\nNormal { vector 0.3 0.2 0.93 }",
                     .arrays = "there is one normal for all"});
+    for (const std::string binding :
+         {"PER_VERTEX", "PER_VERTEX_INDEXED", "PER_FACE", "PER_FACE_INDEXED", "PER_PART", "PER_PART_INDEXED"}) {
+        const bool isRow = binding.find("PART") != std::string::npos, isFace = binding.find("FACE") != std::string::npos;
+        rows.push_back({.name = "NormalBinding " + binding,
+                        .iv = "NormalBinding { value " + binding + " }\n" +
+                              slopes(isRow    ? 1
+                                     : isFace ? 64
+                                              : 65,
+                                     isRow || isFace ? 64 : 65),
+                        .tolerance = isRow || isFace ? Tolerance{6.0, 6.0, 6.0} : Tolerance{0.5, 1.0, 3.0},
+                        .reference = Reference::QuadMesh,
+                        .arrays = "normals are not those of the ground"});
+    }
     rows.push_back({.name = "Normals of the node itself", .iv = "Material { diffuseColor 0.2 0.8 0.3 }", .normals = false});
     return {"Lights, fog and normals", "lights", rows};
 }

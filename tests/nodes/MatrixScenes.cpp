@@ -1,13 +1,21 @@
-// Transforms, groups and cameras of the matrix.
+// Transforms and groups of the matrix.
 #include "Matrix.h"
 
-#include <Inventor/SoRenderManager.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoSearchAction.h>
 
 namespace test::matrix {
 
 namespace {
+
+/// The ground's samples in UTM zone 17, a unit a metre.
+std::string geoCoordinates() {
+    std::string text = "GeoCoordinate { geoSystem [ \"UTM\", \"Z17\" ] point [ ";
+    for (const SbVec3f& p : ground().points)
+        text += std::to_string(500000.0 + double(p[0])) + ' ' + std::to_string(4600000.0 + double(p[1])) + ' ' +
+                std::to_string(1.5f * p[2]) + ", ";
+    return text + "] }\n";
+}
 
 Property around(const std::string& name, const std::string& iv) {
     return {.name = name, .iv = iv};
@@ -71,6 +79,12 @@ Group scenes() {
     rows.push_back(around("GeoOrigin, GeoSeparator", geo("GeoOrigin", "846889 4313850 0") + "}\n" +
                                                          geo("GeoSeparator", "846889 4313850 0") +
                                                          "Scale { scaleFactor 1 1 0.6 } USE GROUND }"));
+    rows.push_back(around("GeoOrigin, GeoSeparator at another place",
+                          geo("GeoOrigin", "500000 4600000 0") + "}\n" + geo("GeoSeparator", "500020 4600010 5") + "USE GROUND }"));
+    rows.push_back({.name = "GeoOrigin, GeoCoordinate",
+                    .iv = geoCoordinates(),
+                    .base = "Scale { scaleFactor 1 1 0.6 }\n" + geo("GeoOrigin", "500000 4600000 0") + "}",
+                    .arrays = "the coordinates are no regular grid"});
     Property path =
         around("SoGLRenderAction applied to a path", "Separator { Scale { scaleFactor 1 1 0.6 } USE GROUND }\nSeparator { "
                                                      "Translation { translation 32 32 20 } Cube { width 20 height 20 depth 20 } }");
@@ -84,79 +98,13 @@ Group scenes() {
         return stage.picture();
     };
     rows.push_back(path);
-    return {"Transforms and groups", "scenes", rows};
-}
-
-namespace {
-
-/// Draws as viewers do.
-Property managed(const std::string& name, const std::function<void(SoRenderManager&)>& set, Measure measure, double tolerance) {
-    Property property{.name = "SoRenderManager: " + name, .tolerance = {0.5, tolerance, 3.0}, .measure = measure};
-    property.draw = [set](Stage& stage, SoSeparator* root) {
-        stage.clear();
-        glEnable(GL_DEPTH_TEST);
-        SoRenderManager manager;
-        manager.setGLRenderAction(&stage.action());
-        manager.setViewportRegion(stage.region());
-        manager.setWindowSize(stage.region().getWindowSize());
-        manager.setBackgroundColor(SbColor4f(1.0f, 0.0f, 1.0f, 1.0f));
-        manager.setAutoClipping(SoRenderManager::NO_AUTO_CLIPPING);
-        manager.setSceneGraph(root);
-        manager.setCamera(static_cast<SoCamera*>(root->getChild(0)));
-        manager.setDoubleBuffer(FALSE);
-        set(manager);
-        manager.render(TRUE, TRUE);
-        return stage.picture();
-    };
-    return property;
-}
-
-}  // namespace
-
-Group cameras() {
-    std::vector<Property> rows;
-    const std::string placed = "nearDistance 1 farDistance 400 position 10 -20 50 orientation 1 0 0 0.9 ";
-    rows.push_back({.name = "PerspectiveCamera", .view = "PerspectiveCamera { heightAngle 1.2 " + placed + "}"});
-    rows.push_back({.name = "OrthographicCamera", .view = "OrthographicCamera { height 60 " + placed + "}"});
-    rows.push_back({.name = "FrustumCamera", .view = "FrustumCamera { left -0.8 right 0.4 top 0.4 bottom -0.6 " + placed + "}"});
-    rows.push_back({.name = "Camera: viewportMapping LEAVE_ALONE, aspectRatio",
-                    .view = "PerspectiveCamera { viewportMapping LEAVE_ALONE aspectRatio 2.5 " + placed + "}"});
-    Property part{.name = "SbViewportRegion: part of the window"};
-    part.draw = [](Stage& stage, SoSeparator* root) {
-        SbViewportRegion region(stage.region());
-        region.setViewportPixels(SbVec2s(40, 20), SbVec2s(100, 80));
-        stage.clear();
-        stage.draw(root, &region);
-        return stage.picture();
-    };
-    rows.push_back(part);
-    for (const auto& [name, mode] : {std::pair{"LEFT_VIEW", SoCamera::LEFT_VIEW}, {"RIGHT_VIEW", SoCamera::RIGHT_VIEW}}) {
-        Property stereo{.name = std::string("SoCamera::setStereoMode ") + name};
-        stereo.draw = [mode](Stage& stage, SoSeparator* root) {
-            auto* camera = static_cast<SoCamera*>(root->getChild(0));
-            camera->setStereoMode(mode);
-            camera->setStereoAdjustment(8.0f);
-            return stage.render(root);
-        };
-        rows.push_back(stereo);
-    }
-    const auto stereo = [](SoRenderManager::StereoMode mode) {
-        return [mode](SoRenderManager& manager) {
-            manager.setStereoMode(mode);
-            manager.setStereoOffset(8.0f);
-        };
-    };
-    rows.push_back(managed("ANAGLYPH", stereo(SoRenderManager::ANAGLYPH), Measure::Pixels, 1.0));
-    rows.push_back(managed("INTERLEAVED_ROWS", stereo(SoRenderManager::INTERLEAVED_ROWS), Measure::Pixels, 1.0));
-    const auto mode = [](SoRenderManager::RenderMode mode) {
-        return [mode](SoRenderManager& manager) { manager.setRenderMode(mode); };
-    };
-    rows.push_back(managed("WIREFRAME", mode(SoRenderManager::WIREFRAME), Measure::Areas, 3.0));
-    rows.push_back(managed("POINTS", mode(SoRenderManager::POINTS), Measure::Areas, 3.0));
-    rows.push_back(managed("HIDDEN_LINE", mode(SoRenderManager::HIDDEN_LINE), Measure::Areas, 3.0));
-    rows.push_back(managed("WIREFRAME_OVERLAY", mode(SoRenderManager::WIREFRAME_OVERLAY), Measure::Areas, 3.0));
-    rows.push_back(managed("BOUNDING_BOX", mode(SoRenderManager::BOUNDING_BOX), Measure::Areas, 3.0));
-    return {"Cameras and render modes", "cameras", rows};
+    return {
+        "Transforms and groups",
+        "scenes",
+        rows,
+        {{"Camera under a transform", "Coin 4.0.0's viewing matrix is then not the one that it draws with; nodes that choose by "
+                                      "the view cull wrongly. A GeoSeparator around the ground stands for large coordinates"},
+         {"SceneTexture2", "not part of the test: a picture takes Coin 4.0.0 minutes in a context without a window"}}};
 }
 
 }  // namespace test::matrix

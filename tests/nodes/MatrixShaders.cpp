@@ -78,7 +78,9 @@ Group shaders() {
         "Shaders and shadows",
         "shaders",
         rows,
-        {{"SoShadowDirectionalLight",
+        {{"SoVertexAttribute", "terrain nodes send positions, normals, colours and texture coordinates to a shader, and no further "
+                               "attributes; each texture unit has room for four numbers"},
+         {"SoShadowDirectionalLight",
           "Coin 4.0.0 draws all of the reference in shadow under Mesa, its own shapes alone as well; spot lights stand for it"}}};
 }
 

@@ -107,6 +107,7 @@ Group textures() {
     rows.push_back({.name = "TextureCubeMap, TextureCoordinate3",
                     .iv = spaceCoordinates() + cubeText(),
                     .arrays = "the texture is not two-dimensional"});
+    rows.push_back({.name = "BumpMap", .iv = "BumpMap { " + imageText(1) + " }\n", .base = texture(3)});
     return {"Textures", "textures", rows};
 }
 
