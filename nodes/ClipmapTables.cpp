@@ -6,7 +6,7 @@
 
 struct ClipmapErrorsLater::Shared {
     std::mutex mutex;
-    std::shared_ptr<const terrain::ClipmapErrors> errors;
+    std::shared_ptr<terrain::ClipmapErrors> errors;
 };
 
 namespace {
@@ -21,19 +21,21 @@ int levelsOf(const terrain::SampleGrid & grid)
 
 }  // namespace
 
-ClipmapErrorsLater::ClipmapErrorsLater(const terrain::SampleGrid & grid, const terrain::TerrainModel & model) : shared_(std::make_shared<Shared>())
+ClipmapErrorsLater::ClipmapErrorsLater(const terrain::SampleGrid & grid, const terrain::TerrainModel & model) : shared_(std::make_shared<Shared>()), edits_(model.edits),
+      version_(model.edits ? model.edits->version() : 0)
 {
     // About 50 ms.
     constexpr std::size_t kAtOnce = std::size_t(1) << 21;
     const int levels = levelsOf(grid);
     const std::size_t samples = std::size_t(grid.columns()) * std::size_t(grid.rows());
     if (samples <= kAtOnce || !model.samples) {
-        shared_->errors = std::make_shared<const terrain::ClipmapErrors>(grid, levels);
+        shared_->errors = std::make_shared<terrain::ClipmapErrors>(grid, levels);
         return;
     }
-    terrain::TaskRunner::shared()->submit([shared = std::weak_ptr<Shared>(shared_), grid, levels, owner = model.samples] {
+    terrain::TaskRunner::shared()->submit([shared = std::weak_ptr<Shared>(shared_), grid, levels, owner = model.samples, gate = model.gate] {
         if (shared.expired()) return;
-        auto errors = std::make_shared<const terrain::ClipmapErrors>(grid, levels);
+        // Edits need not wait for it: what they change in the meantime is looked at once more by get().
+        auto errors = std::make_shared<terrain::ClipmapErrors>(grid, levels, gate.get());
         if (const auto wanted = shared.lock()) {
             const std::lock_guard lock(wanted->mutex);
             wanted->errors = std::move(errors);
@@ -43,10 +45,18 @@ ClipmapErrorsLater::ClipmapErrorsLater(const terrain::SampleGrid & grid, const t
 
 ClipmapErrorsLater::~ClipmapErrorsLater() {}
 
-std::shared_ptr<const terrain::ClipmapErrors> ClipmapErrorsLater::get() const
+std::shared_ptr<const terrain::ClipmapErrors> ClipmapErrorsLater::get(const terrain::SampleGrid & grid) const
 {
-    const std::lock_guard lock(shared_->mutex);
-    return shared_->errors;
+    std::shared_ptr<terrain::ClipmapErrors> errors;
+    {
+        const std::lock_guard lock(shared_->mutex);
+        errors = shared_->errors;
+    }
+    if (!errors || !edits_ || edits_->version() == version_) return errors;
+    const terrain::GridEdits all{{{glm::ivec2(0), glm::ivec2(grid.columns() - 1, grid.rows() - 1)}}, true};
+    errors->update(grid, edits_->since(version_).value_or(all));
+    version_ = edits_->version();
+    return errors;
 }
 
 ClipmapTables::Entry & ClipmapTables::entryOf(const terrain::TerrainModel & model)

@@ -2,6 +2,7 @@
 #ifndef SOTERRAIN_CLIPMAPTABLES_H
 #define SOTERRAIN_CLIPMAPTABLES_H
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -20,12 +21,14 @@ public:
     ClipmapErrorsLater(const ClipmapErrorsLater &) = delete;
     ClipmapErrorsLater & operator=(const ClipmapErrorsLater &) = delete;
 
-    /// Null while they are being computed.
-    std::shared_ptr<const terrain::ClipmapErrors> get() const;
+    /// Null while they are being computed. Those of a grid that has been edited are brought up to date.
+    std::shared_ptr<const terrain::ClipmapErrors> get(const terrain::SampleGrid & grid) const;
 
 private:
     struct Shared;
     std::shared_ptr<Shared> shared_;
+    std::shared_ptr<const terrain::EditLog> edits_;
+    mutable std::uint64_t version_ = 0;  ///< of the edits that they are of
 };
 
 /// The tables of one node, found again as long as their grid is in use.

@@ -37,6 +37,7 @@ public:
                                          SoTerrainStatistics & statistics);
 
     bool isThere() const override { return renderer_.isThere(); }
+    void update(const terrain::SampleGrid &, const terrain::GridEdits & edits) override { clipmap_.update(edits); }
     std::vector<terrain::GlName> release() override;
     std::size_t memoryBytes() const override { return clipmap_.bytes(); }
     std::size_t bufferBytes() const override { return renderer_.bufferBytes(); }

@@ -11,7 +11,6 @@
 #include <SoTerrain/SoHeightMapElement.h>
 
 #include "base/ProfileScope.h"
-#include "height/HeightSource.h"
 
 using terrain::Error;
 using terrain::Result;
@@ -54,18 +53,28 @@ Result<GridRequest> sizesFor(const GridRequest & request, long available, const 
 
 }  // namespace
 
-GridCache::Entry & GridCache::entryFor(const Entry & key)
+bool GridCache::Entry::isFor(const Entry & key) const
+{
+    return source == key.source && nodeId == key.nodeId && columns == key.columns && rows == key.rows && start == key.start;
+}
+
+GridCache::Entry * GridCache::known(const Entry & key)
 {
     ++use_;
     // What was not asked for lately is of data that has changed since.
     constexpr std::uint64_t kKept = 16;
     std::erase_if(entries_, [this](const Entry & e) { return use_ - e.lastUse > kKept; });
     for (Entry & e : entries_)
-        if (e.nodeId == key.nodeId && e.columns == key.columns && e.rows == key.rows && e.start == key.start &&
-            e.fromHeightMap == key.fromHeightMap) {
+        if (e.isFor(key)) {
             e.lastUse = use_;
-            return e;
+            return &e;
         }
+    return nullptr;
+}
+
+GridCache::Entry & GridCache::entryFor(const Entry & key)
+{
+    if (Entry * entry = known(key)) return *entry;
     entries_.push_back(key);
     entries_.back().lastUse = use_;
     return entries_.back();
@@ -78,10 +87,22 @@ Result<TerrainGrid> GridCache::complete(Entry & entry, bool withErrors)
         return Error{"terrain", "at most " + text(kLargestSide) + " samples a row or column", text(entry.columns) + " x " + text(entry.rows)};
     const terrain::ProfileScope scope("grid: bounds and errors");
     const auto start = std::chrono::steady_clock::now();
-    if (!entry.model.boxes) entry.model.boxes = std::make_shared<terrain::BoxPyramid>(entry.grid);
-    if (withErrors && !entry.model.errors) entry.model.errors = std::make_shared<terrain::ErrorHierarchy>(entry.grid);
+    if (!entry.edits) entry.edits = std::make_shared<terrain::EditLog>();
+    const bool isNew = !entry.boxes || (withErrors && !entry.errors);
+    if (!entry.boxes) entry.boxes = std::make_shared<terrain::BoxPyramid>(entry.grid);
+    if (withErrors && !entry.errors) entry.errors = std::make_shared<terrain::ErrorHierarchy>(entry.grid);
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-    return TerrainGrid{entry.grid, entry.model, entry.fromHeightMap, time.count()};
+    return TerrainGrid{entry.grid, entry.model(), entry.source != nullptr, isNew ? time.count() : 0.0};
+}
+
+void GridCache::update(Entry & entry, const terrain::GridEdits & edits)
+{
+    if (edits.isEmpty() || !entry.boxes) return;
+    const terrain::ProfileScope scope("grid: edit");
+    for (const terrain::SampleRect & rect : edits.rects) entry.boxes->update(entry.grid, rect);
+    if (entry.errors)
+        for (const terrain::SampleRect & rect : edits.rects) entry.errors->update(entry.grid, rect, entry.boxes->hasHoles());
+    entry.edits->add(edits);
 }
 
 Result<TerrainGrid> GridCache::findMap(SoState * state, const GridRequest & request, bool withErrors)
@@ -98,14 +119,21 @@ Result<TerrainGrid> GridCache::findMap(SoState * state, const GridRequest & requ
         return Error{"terrain", text(part.verticesPerRow) + " x " + text(part.verticesPerColumn) + " samples from column " + text(column) +
                      ", row " + text(row), "a height map of " + text(map.columns) + " x " + text(map.rows)};
     Entry key;
-    key.nodeId = element->getNodeId();
+    key.source = element->getSource();
     key.columns = part.verticesPerRow;
     key.rows = part.verticesPerColumn;
     key.start = part.startIndex;
-    key.fromHeightMap = true;
     Entry & entry = entryFor(key);
     entry.grid = SampleGrid(map, column, row, key.columns, key.rows);
-    entry.model.samples = element->getSource()->weak_from_this().lock();
+    entry.samples = element->getSource()->weak_from_this().lock();
+    if (const terrain::MapSource * source = element->getSource()->editable()) {
+        if (entry.samples) entry.gate = std::shared_ptr<terrain::SampleGate>(entry.samples, &source->gate());
+        const auto edits = source->edits().since(entry.version);
+        const terrain::SampleRect all{{column, row}, {column + key.columns - 1, row + key.rows - 1}};
+        // Too many to tell: everything, and holes may be elsewhere.
+        update(entry, edits ? edits->within(all) : terrain::GridEdits{{{{0, 0}, all.high - all.low}}, true});
+        entry.version = source->edits().version();
+    }
     // Of a map in scratch space, what the views look at would add up to the whole in the course of a flight.
     constexpr std::size_t kResidentBytes = std::size_t(96) << 20;
     map.heights.limitResident(kResidentBytes);
@@ -126,16 +154,42 @@ Result<TerrainGrid> GridCache::findCoordinates(SoState * state, const GridReques
     key.columns = sizes.value().verticesPerRow;
     key.rows = sizes.value().verticesPerColumn;
     key.start = sizes.value().startIndex;
-    Entry & entry = entryFor(key);
     const float * points = element->getArrayPtr3()[key.start].getValue();
-    if (entry.model.boxes) {
-        entry.grid = entry.grid.movedTo(points);
+    Entry * entry = known(key);
+    if (!entry) entry = changedEntry(key, points);
+    if (!entry) entry = &entryFor(key);
+    if (entry->boxes) {
+        entry->grid = entry->grid.movedTo(points);
     } else {
         auto grid = SampleGrid::overPoints(points, key.columns, key.rows);
         if (!grid) return grid.error();
-        entry.grid = grid.value();
+        entry->grid = grid.value();
+        entry->digest = CoordinateDigest(points, key.columns, key.rows);
     }
-    return complete(entry, withErrors);
+    return complete(*entry, withErrors);
+}
+
+/// The entry of the same coordinates before they changed, brought up to date; null where there is none or nearly all is new.
+GridCache::Entry * GridCache::changedEntry(const Entry & key, const float * points)
+{
+    Entry * before = nullptr;
+    for (Entry & e : entries_)
+        if (!e.source && e.boxes && e.columns == key.columns && e.rows == key.rows && e.start == key.start && (!before || e.lastUse < before->lastUse))
+            before = &e;
+    if (!before) return nullptr;
+    const auto grid = SampleGrid::overPoints(points, key.columns, key.rows);
+    if (!grid || !grid.value().isLike(before->grid)) return nullptr;
+    CoordinateDigest now(points, key.columns, key.rows);
+    const terrain::GridEdits edits = before->digest.changes(now);
+    std::int64_t changed = 0;
+    for (const terrain::SampleRect & rect : edits.rects) changed += rect.samples();
+    if (2 * changed > std::int64_t(key.columns) * key.rows) return nullptr;
+    before->nodeId = key.nodeId;
+    before->lastUse = use_;
+    before->grid = grid.value();
+    before->digest = std::move(now);
+    update(*before, edits);
+    return before;
 }
 
 Result<TerrainGrid> GridCache::find(SoState * state, const GridRequest & request, bool withErrors)
@@ -147,6 +201,6 @@ Result<TerrainGrid> GridCache::find(SoState * state, const GridRequest & request
 std::size_t GridCache::bytes() const
 {
     std::size_t total = 0;
-    for (const Entry & e : entries_) total += e.model.bytes();
+    for (const Entry & e : entries_) total += e.model().bytes() + e.digest.bytes();
     return total;
 }

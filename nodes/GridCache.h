@@ -8,7 +8,9 @@
 
 #include <Inventor/SbBasic.h>
 
+#include "CoordinateDigest.h"
 #include "base/Result.h"
+#include "height/MapSource.h"
 #include "height/SampleGrid.h"
 #include "lod/TerrainModel.h"
 
@@ -29,8 +31,8 @@ struct TerrainGrid {
     double buildMilliseconds = 0.0;
 };
 
-/// Bounds and errors by the node id of what the samples come from, so that they are computed once per change of the data. A node under
-/// several properties keeps one entry for each.
+/// Bounds and errors of what the samples come from, computed once and then kept up to date with its edits. A node under several
+/// properties keeps one entry for each.
 class GridCache {
 public:
     /// Error: no height map and no coordinates, fewer coordinates than the fields ask for, sizes that make no grid.
@@ -39,16 +41,28 @@ public:
 
 private:
     struct Entry {
-        SbUniqueId nodeId = 0;
+        const terrain::HeightSource * source = nullptr;  ///< of a height map; kept by model.samples
+        std::uint64_t version = 0;                       ///< of its edits that are in the model
+        SbUniqueId nodeId = 0;                           ///< of coordinates
         int columns = 0;
         int rows = 0;
         int start = 0;
-        bool fromHeightMap = false;
         terrain::SampleGrid grid;  ///< its samples may be gone
-        terrain::TerrainModel model;
+        std::shared_ptr<terrain::BoxPyramid> boxes;
+        std::shared_ptr<terrain::ErrorHierarchy> errors;
+        std::shared_ptr<terrain::EditLog> edits;
+        std::shared_ptr<terrain::SampleGate> gate;
+        std::shared_ptr<const void> samples;
+        CoordinateDigest digest;  ///< of coordinates
         std::uint64_t lastUse = 0;
+
+        terrain::TerrainModel model() const { return {boxes, errors, samples, gate, edits}; }
+        bool isFor(const Entry & key) const;
     };
+    Entry * known(const Entry & key);
     Entry & entryFor(const Entry & key);
+    void update(Entry & entry, const terrain::GridEdits & edits);
+    Entry * changedEntry(const Entry & key, const float * points);
     terrain::Result<TerrainGrid> complete(Entry & entry, bool withErrors);
     terrain::Result<TerrainGrid> findMap(SoState * state, const GridRequest & request, bool withErrors);
     terrain::Result<TerrainGrid> findCoordinates(SoState * state, const GridRequest & request, bool withErrors);

@@ -88,13 +88,15 @@ std::unique_ptr<terrain::LodAlgorithm> SoGeoMipmapTerrain::createAlgorithm(const
 {
     const int size = validTileSize(this->tileSize.getValue(), GeoMipmapErrors::kSmallestTile, GeoMipmapErrors::kLargestTile);
     std::erase_if(tables, [](const Table & table) { return table.grid.expired() || table.errors.expired(); });
-    std::shared_ptr<const GeoMipmapErrors> errors;
+    std::shared_ptr<GeoMipmapErrors> errors;
     for (const Table & table : tables) {
         const auto known = table.errors.lock();
         if (table.grid.lock() == model.boxes && known && known->layout().tileSize == size) errors = known;
     }
-    if (!errors) {
-        errors = std::make_shared<GeoMipmapErrors>(grid, size);
+    if (errors) {
+        errors->follow(grid);
+    } else {
+        errors = std::make_shared<GeoMipmapErrors>(grid, size, model.edits);
         tables.push_back({model.boxes, errors});
     }
     return std::make_unique<terrain::GeoMipmapMesh>(std::move(errors));

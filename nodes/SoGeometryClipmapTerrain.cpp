@@ -86,7 +86,7 @@
 /*!
   \var SoSFFloat SoGeometryClipmapTerrain::detailAmplitude
   Standard deviation of the noise on the first of the detailLevels, in units of the heights; half of it on each further one. 0, the default, continues the
-  roughness of the samples; below 0 there is none.
+  roughness that the samples have when they are first drawn, and edits do not change it; below 0 there is none.
 */
 /*!
   \var SoSFUInt32 SoGeometryClipmapTerrain::detailSeed
@@ -272,7 +272,7 @@ std::unique_ptr<terrain::LodAlgorithm> SoGeometryClipmapTerrain::createAlgorithm
     shape.detailLevels = detail ? detail->levels() : 0;
     const auto errors = clipmaps->tables.errors(grid, model);
     return std::make_unique<terrain::ClipmapMesh>(grid.columns(), grid.rows(), shape, clipmaps->settings(), model.boxes,
-                                                  [errors] { return errors->get(); }, detail);
+                                                  [errors](const terrain::SampleGrid & samples) { return errors->get(samples); }, detail);
 }
 
 SbBool SoGeometryClipmapTerrain::renderOwn(const TerrainFrame & frame, SoTerrainStatistics & statistics)
@@ -290,7 +290,7 @@ SbBool SoGeometryClipmapTerrain::renderOwn(const TerrainFrame & frame, SoTerrain
     options.freeze = this->freeze.getValue();
     const auto detail = clipmaps->tables.detail(grid, frame.data.model, clipmaps->detailShape());
     options.shape.detailLevels = detail ? detail->levels() : 0;
-    const auto errors = clipmaps->tables.errors(grid, frame.data.model)->get();
+    const auto errors = clipmaps->tables.errors(grid, frame.data.model)->get(grid);
     options.settings.detail = detail.get();
     ClipmapView * view = static_cast<ClipmapView *>(frame.view.drawing.get());
     if (options.shape.size == 0)

@@ -1,6 +1,6 @@
 /*!
   \class SoHeightMap SoHeightMap.h SoTerrain/SoHeightMap.h
-  \brief The SoHeightMap class reads heights for the terrain nodes that follow it.
+  \brief The SoHeightMap class reads heights for the terrain nodes that follow it, and lets a program change them.
 
   The heights come from an image (any format, channel type and bit depth that OpenImageIO reads; values are taken as they are, 65535
   stays 65535), a raster that GDAL reads (with its spacing, origin and no-data value), or a headerless ".raw" file. Terrain nodes
@@ -22,6 +22,25 @@
   A map of more than 2^26 samples (8192 x 8192) is decoded into scratch space on disk instead of memory, 4 bytes a sample: an unnamed
   file in the directory that the environment variable TMPDIR names (/tmp without it), which goes when nobody needs the map any more.
   Then memory holds only what is looked at. Too little space there is an error as an unreadable file is.
+
+  <b>Editing.</b> A program may change heights while they are drawn: setHeights() replaces those of a rectangle, also in a map of its own making.
+  What depends on these samples alone is brought up to date, in all nodes that draw the map: their meshes keep their refinement and
+  pixelError. Nodes that are frozen show edits when they no longer are.
+
+  \code
+  SoHeightMap * map = new SoHeightMap;
+  std::vector<float> heights(513 * 513, 0.0f);
+  map->setHeights(513, 513, heights.data());           // a plain
+  std::vector<float> brush(33 * 33, 5.0f);
+  map->setHeights(100, 200, 33, 33, brush.data());     // a plateau on it
+  \endcode
+
+  Edits are in memory only: SoWriteAction writes the fields, hence the file's name and not what was edited, and of a map of the program's
+  making nothing; use getHeights() to keep them. A change of spacing or origin moves the ground as it is, edits included. A change of
+  filename, channel, rawSize, rawType, noData, heightScale or heightOffset, and touch(), read the file anew, and edits are lost; without a
+  filename all of these do nothing. A filename replaces a map of the program's making.
+
+  A copy of the node has the same map, and shares its memory until one of the two is edited or moved.
 
   \code
   #Inventor V2.1 ascii
@@ -52,7 +71,7 @@
 
 /*!
   \var SoSFString SoHeightMap::filename
-  Image, raster or raw file. Empty, the default: no height map.
+  Image, raster or raw file. Empty, the default: no height map but what setHeights() makes.
 */
 /*!
   \var SoSFVec2f SoHeightMap::spacing
@@ -96,6 +115,8 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 
 #include <Inventor/SoInput.h>
 #include <Inventor/actions/SoCallbackAction.h>
@@ -110,13 +131,63 @@
 #include <SoTerrain/SoTerrain.h>
 
 #include "FindFile.h"
-#include "height/HeightSource.h"
+#include "height/MapSource.h"
+
+namespace {
+
+/// A map with all the nodes that have it: copies of one another.
+struct SharedMap {
+    std::shared_ptr<terrain::MapSource> source;
+    glm::dvec2 ownSpacing{1.0, 1.0};  ///< of the file
+};
+
+std::string text(long long number)
+{
+    return std::to_string(number);
+}
+
+void warn(const char * function, const terrain::Error & error)
+{
+    SoDebugError::postWarning(function, "%s", error.message().c_str());
+}
+
+bool isSame(float a, float b)
+{
+    return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+}  // namespace
 
 class SoHeightMap::Private {
 public:
-    std::shared_ptr<const terrain::HeightSource> source;
-    bool isStale = true;       ///< a field changed since the file was read
+    /// What the samples of a file depend on, beside its contents.
+    struct Reading {
+        int channel = -1;
+        SbVec2i32 rawSize;
+        int rawType = 0;
+        float heightScale = 1.0f, heightOffset = 0.0f, noData = 0.0f;
+        bool operator==(const Reading & other) const
+        {
+            return channel == other.channel && rawSize == other.rawSize && rawType == other.rawType && isSame(heightScale, other.heightScale) &&
+                   isSame(heightOffset, other.heightOffset) && isSame(noData, other.noData);
+        }
+    };
+
+    struct Rect {
+        glm::ivec2 low, size;
+    };
+
+    /// The map for this node alone: a copy where others have it too.
+    terrain::Result<terrain::MapSource *> ownSource();
+    std::optional<terrain::Error> whyNot(const Rect & rect, const void * heights) const;
+
+    std::shared_ptr<SharedMap> map;
+    Reading reading;           ///< of the map's file
+    bool isChanged = true;     ///< a field changed since they were last looked at
+    bool isStale = true;       ///< the file must be read
+    bool isFromFile = false;   ///< the map is
     bool hasFailed = false;    ///< the file could not be read
+    bool isEditing = false;
     SbString path;             ///< filename as it was found when the node was read; empty: look again
 };
 
@@ -167,62 +238,185 @@ void SoHeightMap::copyContents(const SoFieldContainer * from, SbBool copyConnect
     inherited::copyContents(from, copyConnections);
     // A copy has the same file and need not read it again.
     const SoHeightMap * other = static_cast<const SoHeightMap *>(from);
-    pimpl->path = other->pimpl->path;
-    pimpl->source = other->pimpl->source;
-    pimpl->isStale = other->pimpl->isStale;
-    pimpl->hasFailed = other->pimpl->hasFailed;
+    const bool isEditing = pimpl->isEditing;
+    *pimpl = *other->pimpl;
+    pimpl->isEditing = isEditing;
 }
 
 void SoHeightMap::notify(SoNotList * list)
 {
-    pimpl->isStale = true;
-    if (list->getLastField() == &this->filename) pimpl->path = "";
+    const SoField * field = list->getLastField();
+    if (!pimpl->isEditing) pimpl->isChanged = true;
+    if (field == &this->filename) pimpl->path = "";
+    // The file itself may have changed.
+    if (!pimpl->isEditing && (field == &this->filename || !field)) pimpl->isStale = true;
     // Coin can't read NaN from a file, and need not: it is the default.
-    if (list->getLastField() == &this->noData && std::isnan(this->noData.getValue())) this->noData.setDefault(TRUE);
+    if (field == &this->noData && std::isnan(this->noData.getValue())) this->noData.setDefault(TRUE);
     inherited::notify(list);
+}
+
+/// Reads the file where the samples depend on a field that has changed, and moves them where others have.
+void SoHeightMap::bringUpToDate()
+{
+    if (!pimpl->isChanged) return;
+    pimpl->isChanged = false;
+    if (this->filename.getValue().getLength() == 0) {
+        if (pimpl->isFromFile) pimpl->map.reset();
+        pimpl->isStale = pimpl->isFromFile = pimpl->hasFailed = false;
+    } else {
+        const Private::Reading reading{this->channel.getValue(), this->rawSize.getValue(), this->rawType.getValue(), this->heightScale.getValue(),
+                                       this->heightOffset.getValue(), this->noData.getValue()};
+        if (pimpl->isStale || !(reading == pimpl->reading)) {
+            pimpl->reading = reading;
+            load();
+        }
+    }
+    if (!pimpl->map) return;
+    const SbVec2f step = this->spacing.getValue(), start = this->origin.getValue();
+    const glm::dvec2 spacing = step == SbVec2f(0.0f, 0.0f) ? pimpl->map->ownSpacing : glm::dvec2(step[0], step[1]);
+    const glm::dvec2 origin(start[0], start[1]);
+    const terrain::HeightMap & map = *pimpl->map->source->map();
+    if (map.spacing == spacing && map.origin == origin) return;
+    const auto source = pimpl->ownSource();
+    if (source)
+        source.value()->place(origin, spacing);
+    else
+        warn("SoHeightMap", source.error());
 }
 
 void SoHeightMap::load()
 {
     pimpl->isStale = false;
     pimpl->hasFailed = false;
-    if (this->filename.getValue().getLength() == 0) {
-        pimpl->source.reset();
-        return;
-    }
     if (pimpl->path.getLength() == 0) pimpl->path = findFile(this->filename.getValue());
     terrain::HeightFileOptions options;
-    options.channel = this->channel.getValue();
-    const SbVec2i32 size = this->rawSize.getValue();
-    options.rawSize = {size[0], size[1]};
-    options.rawType = terrain::RawType(this->rawType.getValue());
-    const SbVec2f step = this->spacing.getValue(), start = this->origin.getValue();
-    if (step != SbVec2f(0.0f, 0.0f)) options.spacing = glm::dvec2(step[0], step[1]);
-    options.origin = glm::dvec2(start[0], start[1]);
-    options.heightScale = this->heightScale.getValue();
-    options.heightOffset = this->heightOffset.getValue();
-    if (!std::isnan(this->noData.getValue())) options.noData = this->noData.getValue();
-    auto source = terrain::openHeightFile(pimpl->path.getString(), options);
-    pimpl->hasFailed = !source;
-    if (source)
-        pimpl->source = source.value();
-    else
+    options.channel = pimpl->reading.channel;
+    options.rawSize = {pimpl->reading.rawSize[0], pimpl->reading.rawSize[1]};
+    options.rawType = terrain::RawType(pimpl->reading.rawType);
+    options.heightScale = pimpl->reading.heightScale;
+    options.heightOffset = pimpl->reading.heightOffset;
+    if (!std::isnan(pimpl->reading.noData)) options.noData = pimpl->reading.noData;
+    auto map = terrain::readHeightFile(pimpl->path.getString(), options);
+    pimpl->hasFailed = !map;
+    if (!map) {
         // The last good heights stay on screen.
-        SoDebugError::postWarning("SoHeightMap", "%s", source.error().message().c_str());
+        warn("SoHeightMap", map.error());
+        return;
+    }
+    const glm::dvec2 spacing = map.value().spacing;
+    const SbVec2f step = this->spacing.getValue(), start = this->origin.getValue();
+    if (step != SbVec2f(0.0f, 0.0f)) map.value().spacing = glm::dvec2(step[0], step[1]);
+    map.value().origin = glm::dvec2(start[0], start[1]);
+    pimpl->map = std::make_shared<SharedMap>(SharedMap{std::make_shared<terrain::MapSource>(std::move(map).value()), spacing});
+    pimpl->isFromFile = true;
+}
+
+terrain::Result<terrain::MapSource *> SoHeightMap::Private::ownSource()
+{
+    if (map.use_count() > 1) {
+        auto copy = map->source->copy();
+        if (!copy) return copy.error();
+        map = std::make_shared<SharedMap>(SharedMap{std::move(copy).value(), map->ownSpacing});
+    }
+    return map->source.get();
+}
+
+std::optional<terrain::Error> SoHeightMap::Private::whyNot(const Rect & rect, const void * heights) const
+{
+    if (!map) return terrain::Error{"heights", "a map, of a file or of setHeights(columns, rows, heights)", "none"};
+    const terrain::HeightMap & whole = *map->source->map();
+    const std::int64_t right = std::int64_t(rect.low.x) + rect.size.x, top = std::int64_t(rect.low.y) + rect.size.y;
+    if (rect.low.x < 0 || rect.low.y < 0 || rect.size.x < 1 || rect.size.y < 1 || right > whole.columns || top > whole.rows)
+        return terrain::Error{"heights", "a rectangle of samples in a map of " + text(whole.columns) + " x " + text(whole.rows),
+                              text(rect.size.x) + " x " + text(rect.size.y) + " from column " + text(rect.low.x) + ", row " + text(rect.low.y)};
+    if (!heights) return terrain::Error{"heights", text(std::int64_t(rect.size.x) * rect.size.y) + " floats", "NULL"};
+    return std::nullopt;
+}
+
+SbBool SoHeightMap::getSize(int & columns, int & rows)
+{
+    bringUpToDate();
+    if (!pimpl->map) return FALSE;
+    columns = pimpl->map->source->map()->columns;
+    rows = pimpl->map->source->map()->rows;
+    return TRUE;
+}
+
+SbBool SoHeightMap::setHeights(int column, int row, int columns, int rows, const float * heights)
+{
+    bringUpToDate();
+    if (const auto problem = pimpl->whyNot({{column, row}, {columns, rows}}, heights)) {
+        warn("SoHeightMap::setHeights", *problem);
+        return FALSE;
+    }
+    const auto source = pimpl->ownSource();
+    if (!source) {
+        warn("SoHeightMap::setHeights", source.error());
+        return FALSE;
+    }
+    source.value()->setHeights({{column, row}, {column + columns - 1, row + rows - 1}}, heights);
+    tellOfEdit();
+    return TRUE;
+}
+
+SbBool SoHeightMap::setHeights(int columns, int rows, const float * heights)
+{
+    bringUpToDate();
+    const auto refuse = [](const std::string & expected, const std::string & found) {
+        warn("SoHeightMap::setHeights", {"map", expected, found});
+        return FALSE;
+    };
+    if (this->filename.getValue().getLength() > 0) return refuse("no filename", this->filename.getValue().getString());
+    if (columns < 2 || rows < 2) return refuse("at least 2 x 2 samples", text(columns) + " x " + text(rows));
+    if (!heights) return refuse(text(std::int64_t(columns) * rows) + " floats", "NULL");
+    terrain::HeightMap map;
+    map.columns = columns;
+    map.rows = rows;
+    map.heights.assign(std::size_t(columns) * std::size_t(rows), 0.0f);
+    const float * height = heights;
+    for (float & sample : map.heights) sample = std::isfinite(*height) ? *height++ : (++height, std::numeric_limits<float>::quiet_NaN());
+    const SbVec2f step = this->spacing.getValue(), start = this->origin.getValue();
+    if (step != SbVec2f(0.0f, 0.0f)) map.spacing = glm::dvec2(step[0], step[1]);
+    map.origin = glm::dvec2(start[0], start[1]);
+    pimpl->map = std::make_shared<SharedMap>(SharedMap{std::make_shared<terrain::MapSource>(std::move(map)), glm::dvec2(1.0, 1.0)});
+    pimpl->isFromFile = false;
+    tellOfEdit();
+    return TRUE;
+}
+
+SbBool SoHeightMap::getHeights(int column, int row, int columns, int rows, float * heights)
+{
+    bringUpToDate();
+    if (const auto problem = pimpl->whyNot({{column, row}, {columns, rows}}, heights)) {
+        warn("SoHeightMap::getHeights", *problem);
+        return FALSE;
+    }
+    const terrain::HeightMap & map = *pimpl->map->source->map();
+    for (int y = row; y < row + rows; ++y)
+        for (int x = column; x < column + columns; ++x) *heights++ = map.at(x, y);
+    return TRUE;
+}
+
+/// As a field that changes does.
+void SoHeightMap::tellOfEdit()
+{
+    pimpl->isEditing = true;
+    this->touch();
+    pimpl->isEditing = false;
 }
 
 SbBool SoHeightMap::isLoaded()
 {
-    if (pimpl->isStale) load();
-    return pimpl->source && !pimpl->hasFailed;
+    bringUpToDate();
+    return pimpl->map && !pimpl->hasFailed;
 }
 
 void SoHeightMap::doAction(SoAction * action)
 {
     SoState * state = action->getState();
     if (!state->isElementEnabled(SoHeightMapElement::getClassStackIndex())) return;
-    if (pimpl->isStale) load();
-    SoHeightMapElement::set(state, this, pimpl->source.get(), pimpl->hasFailed);
+    bringUpToDate();
+    SoHeightMapElement::set(state, this, pimpl->map ? pimpl->map->source.get() : NULL, pimpl->hasFailed);
 }
 
 void SoHeightMap::GLRender(SoGLRenderAction * action)

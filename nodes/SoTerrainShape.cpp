@@ -290,6 +290,23 @@ void SoTerrainShape::Private::renderMesh(const TerrainFrame & frame)
     statistics.patches = view.renderer.triangles() > 0 ? view.report.patches : 0;
 }
 
+void SoTerrainShape::Private::bringUpToDate(TerrainView & view, const TerrainGrid & data) const
+{
+    const std::uint64_t version = data.model.edits ? data.model.edits->version() : 0;
+    const bool sameGrid = view.boxes == data.model.boxes && view.localFromFrame == data.grid.localFromFrame();
+    const auto edits = sameGrid && data.model.edits ? data.model.edits->since(view.edits) : std::optional<terrain::GridEdits>(terrain::GridEdits{});
+    if (!sameGrid || !edits) TerrainViews::discardDrawing(view);
+    if (!sameGrid || !edits || view.meshVersion != meshVersion) view.algorithm.reset();
+    if (edits && !edits->isEmpty()) {
+        if (view.drawing) view.drawing->update(data.grid, *edits);
+        if (view.algorithm && !view.algorithm->update(data.grid, *edits)) view.algorithm.reset();
+    }
+    view.boxes = data.model.boxes;
+    view.edits = version;
+    view.localFromFrame = data.grid.localFromFrame();
+    view.meshVersion = meshVersion;
+}
+
 void SoTerrainShape::Private::render(SoGLRenderAction * action)
 {
     SoState * state = action->getState();
@@ -301,10 +318,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.buildMilliseconds = data->buildMilliseconds;
 
     TerrainView & view = views.find(action);
-    if (view.boxes != data->model.boxes) TerrainViews::discardDrawing(view);
-    if (view.boxes != data->model.boxes || view.meshVersion != meshVersion) view.algorithm.reset();
-    view.boxes = data->model.boxes;
-    view.meshVersion = meshVersion;
+    bringUpToDate(view, *data);
     SoMaterialBundle materials(action);
     materials.sendFirst();
     const StateAttributes attributes(action, data->grid, true);

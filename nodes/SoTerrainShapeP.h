@@ -26,6 +26,8 @@ public:
     terrain::LodSettings settingsFor(SoState * state, const TerrainGrid & data) const;
     void select(TerrainView & view, const terrain::View & camera, const terrain::LodSettings & settings, const TerrainGrid & data,
                 const StateAttributes & attributes);
+    /// What the view keeps follows the data's edits, or is given up where the data is another or stands elsewhere.
+    void bringUpToDate(TerrainView & view, const TerrainGrid & data) const;
     /// Draws from the view's mesh.
     void renderMesh(const TerrainFrame & frame);
     /// Whether undersides of triangles are hidden by upper sides, so that GL may leave them out and the picture stays the same.

@@ -9,6 +9,8 @@
 #include <Inventor/SbVec2s.h>
 #include <Inventor/sensors/SoNodeSensor.h>
 
+#include <glm/mat4x4.hpp>
+
 #include "TerrainTextureUse.h"
 #include "gl/GlProgram.h"
 #include "gl/TerrainRenderer.h"
@@ -33,6 +35,8 @@ struct ViewKey {
 class ViewDrawing {
 public:
     virtual ~ViewDrawing() = default;
+    /// What the node draws next is to show these.
+    virtual void update(const terrain::SampleGrid & /*grid*/, const terrain::GridEdits & /*edits*/) {}
     /// Whether the current context has its GL objects.
     virtual bool isThere() const = 0;
     /// All GL objects, which are the caller's to delete.
@@ -44,6 +48,8 @@ public:
 struct TerrainView {
     ViewKey key;
     std::shared_ptr<const terrain::BoxPyramid> boxes;  ///< names the data that the mesh belongs to
+    std::uint64_t edits = 0;                           ///< version of that data
+    glm::dmat4 localFromFrame{1.0};                    ///< where it stood
     std::uint64_t meshVersion = 0;                     ///< SoTerrainShape::Private::meshVersion when it was made
     std::unique_ptr<terrain::LodAlgorithm> algorithm;
     terrain::TerrainRenderer renderer;

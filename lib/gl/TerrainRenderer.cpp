@@ -40,6 +40,22 @@ void TerrainRenderer::uploadSamples(const SampleGrid& grid, const VertexSource& 
     newVertexBytes_ = uploaded_;
 }
 
+void TerrainRenderer::uploadRect(const SampleGrid& grid, const VertexSource& source, const SampleRect& rect) {
+    const std::size_t count = std::size_t(rect.columns()), stride = format_.stride();
+    std::vector<glm::vec3> points(count);
+    std::vector<std::uint8_t> attributes(count * stride);
+    for (int row = rect.low.y; row <= rect.high.y; ++row) {
+        const std::size_t first = grid.index(rect.low.x, row);
+        for (std::size_t i = 0; i < count; ++i) {
+            points[i] = grid.position(rect.low.x + int(i), row);
+            if (stride > 0) source.write(std::uint32_t(first + i), attributes.data() + i * stride);
+        }
+        positions_.current().update(GL_ARRAY_BUFFER, first * sizeof(glm::vec3), points.data(), count * sizeof(glm::vec3));
+        if (stride > 0) attributes_.update(GL_ARRAY_BUFFER, first * stride, attributes.data(), attributes.size());
+    }
+    uploaded_ += std::size_t(rect.samples()) * (sizeof(glm::vec3) + stride);
+}
+
 void TerrainRenderer::write(const DrawList& list, const VertexSource& source, std::size_t vertex) {
     std::uint8_t* out = mirror_.data() + vertex * format_.stride();
     if (list.places.empty())
@@ -106,6 +122,8 @@ std::size_t TerrainRenderer::upload(const DrawList& list, const SampleGrid& grid
         uploadPool(list, source, everything, onlyNew);
     else if (everything || list.positionsChanged)
         uploadSamples(grid, source);
+    else
+        for (const SampleRect& rect : list.changedSamples) uploadRect(grid, source, rect);
     if (list.indicesChanged) {
         if (list.wholeGrid)
             indices_.current().fill(GL_ELEMENT_ARRAY_BUFFER, list.indices.data(), list.indices.size_bytes(), GL_STATIC_DRAW);

@@ -70,6 +70,7 @@ public:
 
 private:
     void uploadSamples(const SampleGrid& grid, const VertexSource& source);
+    void uploadRect(const SampleGrid& grid, const VertexSource& source, const SampleRect& rect);
     void write(const DrawList& list, const VertexSource& source, std::size_t vertex);
     void writeNew(const DrawList& list, const VertexSource& source);
     void uploadPool(const DrawList& list, const VertexSource& source, bool everything, bool onlyNew);

@@ -128,7 +128,7 @@ Result<HeightMap> readAny(const std::string& path, const HeightFileOptions& opti
     return Error{path, "a .raw file, or one that OpenImageIO or GDAL reads", *imageReason + "; " + *rasterReason};
 }
 
-Result<std::shared_ptr<const HeightSource>> openChecked(const std::string& path, const HeightFileOptions& options) {
+Result<HeightMap> readChecked(const std::string& path, const HeightFileOptions& options) {
     std::error_code failure;
     const auto status = std::filesystem::status(path, failure);
     if (status.type() == std::filesystem::file_type::not_found) return Error{path, "a height map", "no such file"};
@@ -138,14 +138,20 @@ Result<std::shared_ptr<const HeightSource>> openChecked(const std::string& path,
     if (!map) return map.error();
     if (options.spacing) map.value().spacing = *options.spacing;
     if (options.origin) map.value().origin = *options.origin;
-    return makeMapSource(std::move(map).value());
+    return map;
 }
 
 }  // namespace
 
 Result<std::shared_ptr<const HeightSource>> openHeightFile(const std::string& path, const HeightFileOptions& options) {
+    auto map = readHeightFile(path, options);
+    if (!map) return map.error();
+    return makeMapSource(std::move(map).value());
+}
+
+Result<HeightMap> readHeightFile(const std::string& path, const HeightFileOptions& options) {
     try {
-        return openChecked(path, options);
+        return readChecked(path, options);
     } catch (const std::bad_alloc&) {
         return Error{path, "a height map that fits into memory", "too little memory"};
     } catch (const std::exception& exception) {

@@ -44,7 +44,9 @@ struct HeightTile {
     float maximum = 0.0f;
 };
 
-/// A source of heights. Immutable after opening; every member may be called from any thread.
+class MapSource;
+
+/// A source of heights. Immutable after opening, but for what editable() says; every member may be called from any thread.
 class HeightSource : public std::enable_shared_from_this<HeightSource> {
 public:
     virtual ~HeightSource() = default;
@@ -56,6 +58,8 @@ public:
     virtual Result<HeightTile> load(const TileKey& key) const = 0;
     /// The whole of level 0 when it can be read like memory, else null. Lives as long as the source.
     virtual const HeightMap* map() const { return nullptr; }
+    /// Where samples may change: their log and gate (MapSource.h). Else null.
+    virtual const MapSource* editable() const { return nullptr; }
     /// Bytes of memory that the source holds, without what it has in scratch space.
     virtual std::size_t bytes() const = 0;
 };
@@ -84,6 +88,8 @@ struct HeightFileOptions {
 /// Errors: missing or unreadable file, truncated data, channel out of range, three channels and none chosen, fewer than 2 x 2
 /// samples, no scratch space for a large map.
 Result<std::shared_ptr<const HeightSource>> openHeightFile(const std::string& path, const HeightFileOptions& options);
+/// The same as a map.
+Result<HeightMap> readHeightFile(const std::string& path, const HeightFileOptions& options);
 
 /// The source over a map (takes the map). Error: fewer than 2 x 2 samples, or sizes that do not match the samples.
 Result<std::shared_ptr<const HeightSource>> makeMapSource(HeightMap map);

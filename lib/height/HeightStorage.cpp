@@ -65,6 +65,19 @@ void HeightStorage::moveIntoMemory() {
     mapping_.reset();
 }
 
+Result<HeightStorage> HeightStorage::copy() const {
+    if (!mapping_) return HeightStorage(memory_);
+    auto writer = ScratchWriter::create("copy of a height map", size());
+    if (!writer) return writer.error();
+    constexpr std::size_t kPiece = std::size_t(1) << 20;
+    for (std::size_t first = 0; first < size(); first += kPiece) {
+        const std::size_t count = std::min(kPiece, size() - first);
+        if (auto problem = writer.value().write(first, data() + first, count)) return *problem;
+        releasePages(first, count);
+    }
+    return std::move(writer).value().finish();
+}
+
 Error ScratchWriter::problem(const std::string& found) const {
     return Error{subject_, std::to_string(count_ * sizeof(float)) + " bytes of scratch space in " + folder_ + " (see TMPDIR)",
                  found};
@@ -129,7 +142,7 @@ Result<HeightStorage> ScratchWriter::finish() && {
     struct stat status {};
     if (fstat(file_, &status) != 0 || std::uint64_t(status.st_size) != bytes)
         return problem(std::to_string(std::max<off_t>(status.st_size, 0)) + " bytes written");
-    void* begin = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file_, 0);
+    void* begin = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
     if (begin == MAP_FAILED) return problem(systemReason(errno));
     return HeightStorage(std::make_shared<const ScratchMapping>(begin, std::size_t(count_)));
 }

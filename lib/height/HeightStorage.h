@@ -15,7 +15,7 @@
 
 namespace terrain {
 
-/// A file of floats without a name, mapped for reading: it is gone when the last one who uses it goes.
+/// A file of floats without a name, mapped: it is gone when the last one who uses it goes.
 class ScratchMapping {
 public:
     /// Takes a mapping of `count` floats.
@@ -25,6 +25,8 @@ public:
     ScratchMapping& operator=(const ScratchMapping&) = delete;
 
     const float* data() const { return static_cast<const float*>(begin_); }
+    /// What is written there goes to the file when its pages are released.
+    float* writable() const { return static_cast<float*>(begin_); }
     std::size_t size() const { return count_; }
     void release(std::size_t first, std::size_t count) const;
     void limitResident(std::size_t bytes) const;
@@ -70,6 +72,11 @@ public:
     void assign(std::size_t count, float height) { changeable().assign(count, height); }
     void push_back(float height) { changeable().push_back(height); }
     void pop_back() { changeable().pop_back(); }
+
+    /// To write some of the floats in place. Mapped ones stay in scratch space, where every storage that shares them sees it.
+    float* change() { return mapping_ ? mapping_->writable() : memory_.data(); }
+    /// The same floats in memory or scratch space of their own, as these are. Error: no scratch space for them.
+    Result<HeightStorage> copy() const;
 
     bool isMapped() const { return mapping_ != nullptr; }
     /// Bytes that are always in memory: none of mapped floats.

@@ -1,17 +1,23 @@
-// The height source over a map.
+#include "height/MapSource.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
-#include "height/HeightSource.h"
-
 namespace terrain {
 
 namespace {
 
+/// Whether tile `index` of `cells` strides begins before the last of `size` samples. Divides, since the product could overflow.
+bool beginsInside(int index, std::int64_t tileSpan, int size) {
+    return index >= 0 && index <= (std::int64_t(size) - 2) / tileSpan;
+}
+
+}  // namespace
+
 /// The samples of one axis of a tile: first, first + stride, ... and always `last`, even where the map ends within a stride.
-struct Span {
+struct MapSource::Span {
     std::int64_t first = 0;
     std::int64_t last = 0;
     std::int64_t stride = 1;
@@ -20,39 +26,12 @@ struct Span {
     std::int64_t sample(int i) const { return std::min(first + i * stride, last); }
 };
 
-/// Whether tile `index` of `cells` strides begins before the last of `size` samples. Divides, since the product could overflow.
-bool beginsInside(int index, std::int64_t tileSpan, int size) {
-    return index >= 0 && index <= (std::int64_t(size) - 2) / tileSpan;
+int MapSource::levelCount() const {
+    const std::int64_t cells = std::int64_t(std::max(map_.columns, map_.rows)) - 1;
+    int levels = 1;
+    while ((std::int64_t(1) << (levels - 1)) < cells) ++levels;
+    return levels;
 }
-
-Span spanOf(int index, std::int64_t tileSpan, std::int64_t stride, int size) {
-    const std::int64_t first = index * tileSpan;
-    return {first, std::min(first + tileSpan, std::int64_t(size) - 1), stride};
-}
-
-class MapSource : public HeightSource {
-public:
-    explicit MapSource(HeightMap map) : map_(std::move(map)) {}
-
-    HeightExtent extent() const override { return {map_.columns, map_.rows, map_.origin, map_.spacing}; }
-
-    int levelCount() const override {
-        const std::int64_t cells = std::int64_t(std::max(map_.columns, map_.rows)) - 1;
-        int levels = 1;
-        while ((std::int64_t(1) << (levels - 1)) < cells) ++levels;
-        return levels;
-    }
-
-    Result<HeightTile> load(const TileKey& key) const override;
-    const HeightMap* map() const override { return &map_; }
-
-    std::size_t bytes() const override { return sizeof *this + map_.heights.memoryBytes() + map_.projection.capacity(); }
-
-private:
-    void measure(HeightTile& tile, const Span& columns, const Span& rows) const;
-
-    HeightMap map_;
-};
 
 Result<HeightTile> MapSource::load(const TileKey& key) const {
     const auto outside = [&](const std::string& expected) {
@@ -67,8 +46,11 @@ Result<HeightTile> MapSource::load(const TileKey& key) const {
     if (!beginsInside(key.column, tileSpan, map_.columns) || !beginsInside(key.row, tileSpan, map_.rows))
         return outside("a tile inside a map of " + std::to_string(map_.columns) + " x " + std::to_string(map_.rows));
 
-    const Span columns = spanOf(key.column, tileSpan, stride, map_.columns);
-    const Span rows = spanOf(key.row, tileSpan, stride, map_.rows);
+    const auto spanOf = [&](int index, int size) {
+        const std::int64_t first = index * tileSpan;
+        return Span{first, std::min(first + tileSpan, std::int64_t(size) - 1), stride};
+    };
+    const Span columns = spanOf(key.column, map_.columns), rows = spanOf(key.row, map_.rows);
     HeightTile tile;
     tile.key = key;
     tile.columns = columns.count();
@@ -101,7 +83,36 @@ void MapSource::measure(HeightTile& tile, const Span& columns, const Span& rows)
     tile.maximum = empty ? std::numeric_limits<float>::quiet_NaN() : maximum;
 }
 
-}  // namespace
+void MapSource::setHeights(const SampleRect& rect, const float* heights) {
+    if (rect.isEmpty()) return;
+    GridEdits edits;
+    edits.add(rect);
+    const SampleGate::Editing editing(gate_);
+    float* samples = map_.heights.change();
+    for (int row = rect.low.y; row <= rect.high.y; ++row) {
+        float* to = samples + std::size_t(row) * std::size_t(map_.columns) + std::size_t(rect.low.x);
+        for (int i = 0; i < rect.columns(); ++i, ++to) {
+            const float height = *heights++;
+            const bool isHole = !std::isfinite(height);
+            edits.holes = edits.holes || isHole == std::isfinite(*to);
+            *to = isHole ? std::numeric_limits<float>::quiet_NaN() : height;
+        }
+    }
+    edits_.add(edits);
+}
+
+void MapSource::place(glm::dvec2 origin, glm::dvec2 spacing) {
+    const SampleGate::Editing editing(gate_);
+    map_.origin = origin;
+    map_.spacing = spacing;
+}
+
+Result<std::shared_ptr<MapSource>> MapSource::copy() const {
+    auto heights = map_.heights.copy();
+    if (!heights) return heights.error();
+    return std::make_shared<MapSource>(
+        HeightMap{map_.columns, map_.rows, std::move(heights).value(), map_.origin, map_.spacing, map_.projection});
+}
 
 Result<std::shared_ptr<const HeightSource>> makeMapSource(HeightMap map) {
     const std::string size = std::to_string(map.columns) + " x " + std::to_string(map.rows);

@@ -34,6 +34,7 @@ Result<SampleGrid> SampleGrid::overPoints(const float* xyz, int columns, int row
     grid.columns_ = columns;
     grid.rows_ = rows;
     grid.points_ = xyz;
+    grid.pitch_ = std::size_t(columns);
     grid.findRegularity();
     return grid;
 }
@@ -45,9 +46,23 @@ SampleGrid SampleGrid::movedTo(const float* xyz) const {
     return grid;
 }
 
+SampleGrid SampleGrid::part(int column, int row, int columns, int rows) const {
+    const std::size_t first = std::size_t(row) * pitch_ + std::size_t(column);
+    SampleGrid grid = *this;
+    grid.columns_ = columns;
+    grid.rows_ = rows;
+    if (heights_) {
+        grid.heights_ += first * stride_;
+        const glm::dvec4 moved = localFromFrame_ * glm::dvec4(column, row, 0.0, 1.0);
+        grid.localFromFrame_[3] = moved;
+    }
+    if (points_) grid.points_ += first * 3;
+    return grid;
+}
+
 glm::vec3 SampleGrid::position(int column, int row) const {
     if (points_) {
-        const float* p = points_ + index(column, row) * 3;
+        const float* p = points_ + (std::size_t(row) * pitch_ + std::size_t(column)) * 3;
         return {p[0], p[1], p[2]};
     }
     return {float(localFromFrame_[3][0] + localFromFrame_[0][0] * column),
@@ -87,7 +102,6 @@ void SampleGrid::findRegularity() {
         heightAxis_ = heightAxis;
         heights_ = points_ + heightAxis;
         stride_ = 3;
-        pitch_ = std::size_t(columns_);
         localFromFrame_ = glm::dmat4(0.0);
         localFromFrame_[0][columnAxis] = stepColumn;
         localFromFrame_[1][rowAxis] = stepRow;

@@ -38,6 +38,15 @@ public:
     /// The same samples elsewhere in memory, with the regularity that was found before.
     SampleGrid movedTo(const float* xyz) const;
 
+    /// Columns x rows of the samples from (column, row) on, which must lie in the grid.
+    SampleGrid part(int column, int row, int columns, int rows) const;
+
+    /// Whether sizes, kind and frame are the same.
+    bool isLike(const SampleGrid& other) const {
+        return columns_ == other.columns_ && rows_ == other.rows_ && isRegular() == other.isRegular() &&
+               heightAxis_ == other.heightAxis_ && localFromFrame_ == other.localFromFrame_;
+    }
+
     int columns() const { return columns_; }
     int rows() const { return rows_; }
     bool isRegular() const { return heights_ != nullptr; }
@@ -57,7 +66,7 @@ public:
     /// Starts loading a sample that will soon be asked for.
     void prefetch(int column, int row) const {
         const std::size_t sample = std::size_t(row) * pitch_ + std::size_t(column);
-        __builtin_prefetch(heights_ ? heights_ + sample * stride_ : points_ + index(column, row) * 3);
+        __builtin_prefetch(heights_ ? heights_ + sample * stride_ : points_ + sample * 3);
     }
 
     /// Who goes over all rows in order calls this with those that are done: over a map in scratch space, their pages need not stay
@@ -79,7 +88,7 @@ private:
     int rows_ = 0;
     const float* heights_ = nullptr;          ///< regular grids only
     std::size_t stride_ = 1;                  ///< floats from one height to the next
-    std::size_t pitch_ = 0;                   ///< heights from one row to the next
+    std::size_t pitch_ = 0;                   ///< samples from one row to the next
     const float* points_ = nullptr;           ///< null over a map
     const HeightStorage* storage_ = nullptr;  ///< of a map in scratch space
     int heightAxis_ = 2;

@@ -64,36 +64,64 @@ BoxPyramid::Bounds BoxPyramid::measured(const SampleGrid& grid, int column0, int
 
 BoxPyramid::BoxPyramid(const SampleGrid& grid) : gridColumns_(grid.columns()), gridRows_(grid.rows()), regular_(grid.isRegular()) {
     const std::size_t floatsPerBlock = regular_ ? 2 : 6;
-    Level base;
-    base.columns = blocksAcross(gridColumns_, kBlockCells);
-    base.rows = blocksAcross(gridRows_, kBlockCells);
-    base.values.reserve(std::size_t(base.columns) * std::size_t(base.rows) * floatsPerBlock);
-    const auto append = [this](Level& level, const Bounds& bounds) {
-        for (int axis = regular_ ? 2 : 0; axis < 3; ++axis)
-            level.values.insert(level.values.end(), {bounds.low[axis], bounds.high[axis]});
-    };
-    for (int row = 0; row < base.rows; ++row) {
-        const int first = row * kBlockCells;
-        for (int column = 0; column < base.columns; ++column)
-            append(base, measured(grid, column * kBlockCells, first, (column + 1) * kBlockCells, first + kBlockCells, hasHoles_));
-        grid.releaseRows(first, kBlockCells);
+    for (int columns = blocksAcross(gridColumns_, kBlockCells), rows = blocksAcross(gridRows_, kBlockCells);;
+         columns = (columns + 1) / 2, rows = (rows + 1) / 2) {
+        levels_.push_back(
+            {columns, rows, std::vector<float>(std::size_t(columns) * std::size_t(rows) * floatsPerBlock)});
+        if (columns == 1 && rows == 1) break;
     }
-    levels_.push_back(std::move(base));
-    while (levels_.back().columns > 1 || levels_.back().rows > 1) {
-        const Level& fine = levels_.back();
-        Level coarse;
-        coarse.columns = (fine.columns + 1) / 2;
-        coarse.rows = (fine.rows + 1) / 2;
-        coarse.values.reserve(std::size_t(coarse.columns) * std::size_t(coarse.rows) * floatsPerBlock);
-        for (int row = 0; row < coarse.rows; ++row)
-            for (int column = 0; column < coarse.columns; ++column) {
-                Bounds bounds = kNothing;
-                for (int y = 2 * row; y < std::min(2 * row + 2, fine.rows); ++y)
-                    for (int x = 2 * column; x < std::min(2 * column + 2, fine.columns); ++x) include(bounds, stored(fine, x, y));
-                append(coarse, bounds);
-            }
-        levels_.push_back(std::move(coarse));
+    holes_.resize(std::size_t(columns(0)) * std::size_t(rows(0)));
+    for (int row = 0; row < rows(0); ++row) {
+        for (int column = 0; column < columns(0); ++column) measureBlock(grid, column, row);
+        grid.releaseRows(row * kBlockCells, kBlockCells);
     }
+    for (std::size_t level = 1; level < levels_.size(); ++level)
+        for (int row = 0; row < levels_[level].rows; ++row)
+            for (int column = 0; column < levels_[level].columns; ++column) joinBlock(level, column, row);
+    findAll(grid);
+}
+
+void BoxPyramid::store(Level& level, int column, int row, const Bounds& bounds) {
+    float* values = &level.values[(std::size_t(row) * std::size_t(level.columns) + std::size_t(column)) * (regular_ ? 2 : 6)];
+    for (int axis = regular_ ? 2 : 0; axis < 3; ++axis) {
+        *values++ = bounds.low[axis];
+        *values++ = bounds.high[axis];
+    }
+}
+
+void BoxPyramid::measureBlock(const SampleGrid& grid, int column, int row) {
+    bool hasHoles = false;
+    const glm::ivec2 first(column * kBlockCells, row * kBlockCells);
+    store(levels_.front(), column, row,
+          measured(grid, first.x, first.y, first.x + kBlockCells, first.y + kBlockCells, hasHoles));
+    const std::size_t block = std::size_t(row) * std::size_t(columns(0)) + std::size_t(column);
+    blocksWithHoles_ += hasHoles ? 1 : 0;
+    blocksWithHoles_ -= holes_[block] ? 1 : 0;
+    holes_[block] = hasHoles;
+}
+
+void BoxPyramid::joinBlock(std::size_t level, int column, int row) {
+    const Level& fine = levels_[level - 1];
+    Bounds bounds = kNothing;
+    for (int y = 2 * row; y < std::min(2 * row + 2, fine.rows); ++y)
+        for (int x = 2 * column; x < std::min(2 * column + 2, fine.columns); ++x) include(bounds, stored(fine, x, y));
+    store(levels_[level], column, row, bounds);
+}
+
+void BoxPyramid::update(const SampleGrid& grid, const SampleRect& rect) {
+    const SampleRect changed = rect.cutTo({glm::ivec2(0), glm::ivec2(gridColumns_ - 1, gridRows_ - 1)});
+    if (changed.isEmpty()) return;
+    // Samples between two blocks belong to both.
+    const glm::ivec2 end(columns(0) - 1, rows(0) - 1);
+    glm::ivec2 low = glm::min(glm::max(changed.low - 1, glm::ivec2(0)) / kBlockCells, end);
+    glm::ivec2 high = glm::min(changed.high / kBlockCells, end);
+    for (std::size_t level = 0; level < levels_.size(); ++level, low /= 2, high /= 2)
+        for (int row = low.y; row <= high.y; ++row)
+            for (int column = low.x; column <= high.x; ++column)
+                if (level == 0)
+                    measureBlock(grid, column, row);
+                else
+                    joinBlock(level, column, row);
     findAll(grid);
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/Box.h"
 #include "height/SampleGrid.h"
+#include "height/SampleRect.h"
 
 namespace terrain {
 
@@ -27,6 +28,10 @@ public:
     BoxPyramid() = default;
     explicit BoxPyramid(const SampleGrid& grid);
 
+    /// Samples within `rect` have changed, of a grid of the same size and kind: brings up to date what depends on them. Bit for bit
+    /// what building it anew gives.
+    void update(const SampleGrid& grid, const SampleRect& rect);
+
     int levelCount() const { return int(levels_.size()); }
     int columns(int level) const { return levels_[std::size_t(level)].columns; }
     int rows(int level) const { return levels_[std::size_t(level)].rows; }
@@ -40,7 +45,7 @@ public:
     /// Exact bounds of all valid samples.
     const Bounds& all() const { return all_; }
     /// Whether any sample is one.
-    bool hasHoles() const { return hasHoles_; }
+    bool hasHoles() const { return blocksWithHoles_ > 0; }
     std::size_t bytes() const;
 
 private:
@@ -52,6 +57,9 @@ private:
     /// Exact bounds; sets `hasHoles` when there is any.
     static Bounds measured(const SampleGrid& grid, int column0, int row0, int column1, int row1, bool& hasHoles);
     void findAll(const SampleGrid& grid);
+    void store(Level& level, int column, int row, const Bounds& bounds);
+    void measureBlock(const SampleGrid& grid, int column, int row);
+    void joinBlock(std::size_t level, int column, int row);
     Bounds stored(const Level& level, int column, int row) const;
 
     int gridColumns_ = 0;
@@ -59,7 +67,8 @@ private:
     bool regular_ = true;
     std::vector<Level> levels_;
     Bounds all_{};
-    bool hasHoles_ = false;
+    std::vector<bool> holes_;  ///< by block of the first level
+    std::size_t blocksWithHoles_ = 0;
 };
 
 /// The box of bounds that are not empty.

@@ -1,13 +1,17 @@
 #include "lod/BruteForceMesh.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace terrain {
 
 DrawList BruteForceMesh::select(const SampleGrid& grid, const View&, const LodSettings& settings) {
     DrawList list;
     list.wholeGrid = true;
-    list.indicesChanged = list.positionsChanged = !built_ || clockwise_ != settings.clockwise;
+    list.positionsChanged = !built_ || clockwise_ != settings.clockwise;
+    list.indicesChanged = list.positionsChanged || edits_.holes;
+    changed_ = std::exchange(edits_, {});
+    list.changedSamples = changed_.rects;
     if (list.indicesChanged) {
         constexpr int kColumnsAtOnce = 12;
         const std::size_t cells = std::size_t(grid.columns() - 1) * std::size_t(grid.rows() - 1);
@@ -33,6 +37,13 @@ DrawList BruteForceMesh::select(const SampleGrid& grid, const View&, const LodSe
     list.indices = indices_;
     list.report.triangles = triangles_;
     return list;
+}
+
+bool BruteForceMesh::update(const SampleGrid& grid, const GridEdits& edits) {
+    // Normals look one sample around.
+    const SampleRect all{glm::ivec2(0), glm::ivec2(grid.columns() - 1, grid.rows() - 1)};
+    edits_.include(edits.widened(1).within(all));
+    return true;
 }
 
 }  // namespace terrain

@@ -18,14 +18,17 @@ inline bool isCellHole(const SampleGrid& grid, int column, int row) {
            grid.isHole(column + 1, row + 1);
 }
 
-/// Indexes the whole grid once, in columns of cells narrow enough for a vertex cache to keep a row of them, and never again.
+/// Indexes the whole grid once, in columns of cells narrow enough for a vertex cache to keep a row of them, and again only when
+/// holes come or go.
 class BruteForceMesh : public LodAlgorithm {
 public:
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
+    bool update(const SampleGrid& grid, const GridEdits& edits) override;
     std::size_t bytes() const override { return indices_.capacity() * sizeof(std::uint32_t); }
 
 private:
     std::vector<std::uint32_t> indices_;  ///< given away after the first selection
+    GridEdits edits_, changed_;  ///< since the last selection, and in it
     std::uint32_t triangles_ = 0;
     bool built_ = false;
     bool clockwise_ = false;

@@ -26,7 +26,7 @@ std::shared_ptr<const TileMesh> buildByKey(const std::shared_ptr<TileFactory>& f
 ChunkedLod::ChunkedLod(const TerrainModel& model, const SampleGrid& grid, int tileCells, std::shared_ptr<const void> owner,
                        std::shared_ptr<TaskRunner> runner)
     : model_(model), tree_{grid.columns(), grid.rows(), tileCells},
-      samples_(std::make_shared<TileSamples>(grid, *model.boxes, std::move(owner))),
+      samples_(std::make_shared<TileSamples>(grid, *model.boxes, std::move(owner), model.gate)),
       factory_(std::make_shared<TileFactory>(samples_, tree_)),
       cache_(std::move(runner), [factory = factory_](const TileKey& key) { return buildByKey(factory, key); }) {}
 
@@ -36,7 +36,8 @@ Box ChunkedLod::boxOf(const TileId& id) const {
 }
 
 DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
-    const bool asBefore = !isFirst_ && view == view_ && settings == settings_;
+    const bool wasEdited = std::exchange(wasEdited_, false);
+    const bool asBefore = !isFirst_ && !wasEdited && view == view_ && settings == settings_;
     const bool atRest = asBefore && report_.converged;
     const SelectionReport last = report_;
     report_ = SelectionReport{};
@@ -58,7 +59,7 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
         choose();
         place(grid);
         const auto isSame = [](const Tile& a, const Tile& b) { return a.id == b.id && a.base == b.base; };
-        indicesChanged = turned || !std::equal(drawn_.begin(), drawn_.end(), drawnBefore_.begin(), drawnBefore_.end(), isSame);
+        indicesChanged = turned || wasEdited || !std::equal(drawn_.begin(), drawn_.end(), drawnBefore_.begin(), drawnBefore_.end(), isSame);
         if (indicesChanged) writeIndices();
         report_.triangles = std::uint32_t(indices_.size() / 3);
         report_.patches = drawnTiles();
@@ -75,6 +76,43 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
     list.indicesChanged = indicesChanged;
     list.report = report_;
     return list;
+}
+
+bool ChunkedLod::update(const SampleGrid& grid, const GridEdits& edits) {
+    const ProfileScope scope("chunked: edit");
+    wasEdited_ = hasEdits_ = true;
+    samples_->update(grid, *model_.boxes, edits);
+    updateTiles(edits);
+    // Normals look one sample around.
+    const GridEdits around = edits.widened(1);
+    for (auto& [id, slot] : slots_) slot.isOld = slot.isOld || around.touches(tree_.samplesOf(id));
+    return true;
+}
+
+void ChunkedLod::updateTiles(const GridEdits& edits) {
+    const auto isTouched = [&](const TileKey& key) { return edits.touches(tree_.samplesOf({key.level, key.column, key.row})); };
+    factory_->forget(edits);
+    cache_.forget(isTouched);
+    std::vector<TileKey> touched = cache_.residentKeys();
+    std::erase_if(touched, [&](const TileKey& key) { return !isTouched(key); });
+    // Parents first: a tile refines its parent.
+    std::sort(touched.begin(), touched.end(), [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
+    for (const TileKey& key : touched) {
+        const TileId id{key.level, key.column, key.row};
+        const bool isRoot = id.level == tree_.rootLevel();
+        if (!isRoot && !cache_.contains(keyOf(id.parent()))) {
+            cache_.remove(key);
+            continue;
+        }
+        std::shared_ptr<const TileMesh> mesh;
+        if (!edits.holes && tree_.extent(id.level) > kAtOnce) {
+            mesh = changedTile(*samples_, cache_.at(key), edits);
+            factory_->keep(mesh);
+        } else {
+            mesh = factory_->build(id);
+        }
+        cache_.replace(key, std::move(mesh));
+    }
 }
 
 void ChunkedLod::choose() {
@@ -208,7 +246,12 @@ bool ChunkedLod::drawChildren(const TileId& id, float pixels) {
     return true;
 }
 
-float ChunkedLod::parentShare(const TileMesh& mesh, float parentPixels) const {
+float ChunkedLod::parentShare(const TileMesh& mesh, float parentPixels) {
+    // A parent that has been edited elsewhere is not what the tile was made from.
+    if (hasEdits_ && mesh.id.level < tree_.rootLevel()) {
+        const TileMesh* parent = cache_.find(keyOf(mesh.id.parent()));
+        if (!parent || parent->error != mesh.parentError) return 0.0f;
+    }
     if (!settings_.geomorph || mesh.fall.empty() || !(mesh.parentError > 0.0f) || !std::isfinite(parentPixels)) return 0.0f;
     if (parentPixels <= settings_.pixelError) return 1.0f;
     const double ratio = double(mesh.error) / double(mesh.parentError);
@@ -246,6 +289,11 @@ void ChunkedLod::place(const SampleGrid& grid) {
     });
     for (Tile& tile : drawn_) {
         auto [slot, isNew] = slots_.try_emplace(tile.id);
+        if (slot->second.isOld) {
+            pool_.release(slot->second.base, slot->second.count);
+            slot->second = Slot{0, 0, -1.0f, true, false};
+            isNew = true;
+        }
         if (isNew) {
             slot->second.count = std::uint32_t(tile.mesh->at.size());
             slot->second.base = pool_.allocate(slot->second.count);

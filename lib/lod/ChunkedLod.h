@@ -34,6 +34,11 @@ public:
                std::shared_ptr<TaskRunner> runner = nullptr);
 
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
+    /// Tiles with changed samples are made anew at once; those larger than kAtOnce cells keep their vertices and take a new error,
+    /// which may be larger than exact, until they are made anew some time. What is being built of changed samples is dropped.
+    bool update(const SampleGrid& grid, const GridEdits& edits) override;
+    static constexpr int kAtOnce = 512;
+
     std::size_t bytes() const override;
 
     const TileCache<TileMesh>& cache() const { return cache_; }
@@ -53,6 +58,7 @@ private:
         std::uint32_t count = 0;
         float parentShare = -1.0f;
         bool isDrawn = false;
+        bool isOld = false;  ///< vertices are those of samples before an edit
     };
     struct BorderLine {
         bool alongRows = false;  ///< runs from row to row, at one column
@@ -78,7 +84,8 @@ private:
     bool visitChildren(const TileId& id, float pixels);
     bool drawChildren(const TileId& id, float pixels);
     bool draw(const TileId& id, const TileMesh& mesh, const Box& box, float parentPixels);
-    float parentShare(const TileMesh& mesh, float parentPixels) const;
+    float parentShare(const TileMesh& mesh, float parentPixels);
+    void updateTiles(const GridEdits& edits);
     std::size_t vertexBytes(const TileMesh& mesh) const { return mesh.at.size() * settings_.vertexBytes; }
 
     // The list
@@ -91,7 +98,7 @@ private:
 
     TerrainModel model_;
     TileTree tree_;
-    std::shared_ptr<const TileSamples> samples_;
+    std::shared_ptr<TileSamples> samples_;
     std::shared_ptr<TileFactory> factory_;
     TileCache<TileMesh> cache_;
 
@@ -103,6 +110,8 @@ private:
     bool wasTooMuch_ = false;  ///< something did not come because of that
     bool mayExceed_ = false;   ///< one group of tiles may come although it exceeds the budget
     bool isFirst_ = true;
+    bool wasEdited_ = false;   ///< since the last selection
+    bool hasEdits_ = false;    ///< ever
     bool isSettled_ = false;  ///< nothing is being built, and all tiles that are there could be looked at
     std::size_t placedBytes_ = 0;
     std::vector<Tile> drawn_, drawnBefore_;

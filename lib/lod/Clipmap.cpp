@@ -218,6 +218,32 @@ void Clipmap::cover(const BoxPyramid& boxes, const ScreenSpace& space, const Cli
     frame_.report.patches = patches;
 }
 
+/// Vertices of a level whose heights or normals, own or coarser, depend on these samples.
+ClipRect Clipmap::verticesBy(const SampleRect& samples, int level) const {
+    const int source = layout_.sourceLevel(level);
+    // Detail looks two samples around. On the other levels a coarser height depends on samples a vertex away, and a coarser normal
+    // on those of vertices next to that one.
+    constexpr int kAround = 3;
+    if (source < 0) return {(samples.low - kAround) * (1 << -source), (samples.high + kAround) * (1 << -source)};
+    const int round = (1 << source) - 1;
+    return {(samples.low >> source) - kAround, ((samples.high + round) >> source) + kAround};
+}
+
+/// The same and, level by level from the coarsest one, what has changed of what is there.
+std::span<const ClipmapUpdates::Update> Clipmap::withEdits(std::span<const ClipmapUpdates::Update> updates) {
+    if (edits_.isEmpty()) return updates;
+    allUpdates_.clear();
+    auto next = updates.begin();
+    for (int level = layout_.levels() - 1; level >= 0; --level) {
+        for (; next != updates.end() && next->level == level; ++next) allUpdates_.push_back(*next);
+        for (const SampleRect& rect : edits_.rects)
+            if (const ClipRect there = verticesBy(rect, level).cutTo(updates_.valid()[std::size_t(level)]); !there.isEmpty())
+                allUpdates_.push_back({level, there});
+    }
+    edits_ = {};
+    return allUpdates_;
+}
+
 const Clipmap::Frame& Clipmap::select(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors* errors,
                                       const View& view, const ClipmapSettings& settings) {
     const ProfileScope scope("clipmap: select");
@@ -230,7 +256,7 @@ const Clipmap::Frame& Clipmap::select(const SampleGrid& grid, const BoxPyramid& 
     const std::int64_t all = std::int64_t(layout_.size()) * layout_.size();
     const std::int64_t budget = first_ ? 0 : settings.updateBudget > 0 ? settings.updateBudget : all;
     first_ = false;
-    frame_.updates = updates_.follow(frame_.viewer, frame_.finest, budget);
+    frame_.updates = withEdits(updates_.follow(frame_.viewer, frame_.finest, budget));
     frame_.active = activeRegions(layout_, updates_.valid(), frame_.finest, frame_.viewer);
     frame_.report = {};
     cover(boxes, space, settings);

@@ -51,6 +51,9 @@ public:
     float errorOf(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors& errors, const View& view,
                   const ClipmapSettings& settings) const;
 
+    /// Samples have changed: the next selection stores what is in store of them again.
+    void update(const GridEdits& edits) { edits_.include(edits); }
+
     const ClipmapLayout& layout() const { return layout_; }
     /// That of the last selection.
     const Frame& frame() const { return frame_; }
@@ -85,11 +88,15 @@ private:
                   const Eye& eye, glm::dvec2 viewer, const ClipmapSettings& settings) const;
     float boundError(const SampleGrid& grid, const BoxPyramid& boxes, const ClipmapErrors& errors, const ScreenSpace& space,
                      glm::dvec2 viewer, std::span<const ClipRect> active, const Choice& choice) const;
+    std::span<const ClipmapUpdates::Update> withEdits(std::span<const ClipmapUpdates::Update> updates);
+    ClipRect verticesBy(const SampleRect& samples, int level) const;
     void cover(const BoxPyramid& boxes, const ScreenSpace& space, const ClipmapSettings& settings);
 
     ClipmapLayout layout_;
     ClipmapUpdates updates_;
     Frame frame_;
+    GridEdits edits_;  ///< since the last selection
+    std::vector<ClipmapUpdates::Update> allUpdates_;
     bool first_ = true;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -172,15 +173,16 @@ private:
     std::vector<std::uint8_t> states_;
 };
 
-ClipmapErrors::ClipmapErrors(const SampleGrid& grid, int levels) : levels_(std::size_t(std::max(levels, 0))) {
+ClipmapErrors::ClipmapErrors(const SampleGrid& grid, int levels, SampleGate* gate) : levels_(std::size_t(std::max(levels, 0))) {
     if (levels_.empty()) return;
-    scan(grid);
+    scan(grid, gate);
     buildLayers();
 }
 
-void ClipmapErrors::scan(const SampleGrid& grid) {
-    std::vector<ClipmapScan> scans;
-    for (int level = 0; level < levels(); ++level) scans.emplace_back(grid, level, level + 1 == levels());
+namespace {
+
+/// Adds all rows of the grid to all scans. Whether there is a hole.
+bool scanRows(const SampleGrid& grid, std::vector<ClipmapScan>& scans, SampleGate* gate) {
     // Some rows for each level in turn, so that they and what that level holds stay in the cache.
     constexpr int kRows = 16;
     const int axes = grid.isRegular() ? 1 : 3, columns = grid.columns();
@@ -189,6 +191,7 @@ void ClipmapErrors::scan(const SampleGrid& grid) {
     bool holes = false;
     for (int first = 0; first < grid.rows(); first += kRows) {
         const int count = std::min(kRows, grid.rows() - first);
+        const auto reading = gate ? std::make_unique<SampleGate::Reading>(*gate) : nullptr;
         std::array<std::array<const float*, 3>, kRows> rows{};
         for (int i = 0; i < count; ++i) {
             float* copy = copied.data() + std::size_t(inPlace ? 0 : i * axes) * std::size_t(columns);
@@ -205,12 +208,22 @@ void ClipmapErrors::scan(const SampleGrid& grid) {
             for (int i = 0; i < count; ++i) scan.addRow(grid, rows[std::size_t(i)]);
         grid.releaseRows(first, count);
     }
+    return holes;
+}
+
+}  // namespace
+
+void ClipmapErrors::scan(const SampleGrid& grid, SampleGate* gate) {
+    std::vector<ClipmapScan> scans;
+    for (int level = 0; level < levels(); ++level) scans.emplace_back(grid, level, level + 1 == levels());
+    const bool holes = scanRows(grid, scans, gate);
     for (std::size_t i = 0; i < levels_.size(); ++i) {
         levels_[i].plain = scans[i].plain();
         levels_[i].blending = scans[i].blending();
         levels_[i].layers.push_back({{scans[i].blockColumns(), scans[i].blockRows()}, 0});
     }
     if (!holes) return;
+    const auto reading = gate ? std::make_unique<SampleGate::Reading>(*gate) : nullptr;
     Holes correction(grid);
     for (int level = 0; level < levels(); ++level) correction.correct(levels_[std::size_t(level)], level, blocks(level, 0));
 }
@@ -240,6 +253,71 @@ void ClipmapErrors::buildLayers() {
             *errors = std::move(all);
         }
     }
+}
+
+/// Errors of one level of a part of a grid that begins and ends with blocks, or with the grid.
+ClipmapErrors::Level ClipmapErrors::measured(const SampleGrid& grid, int level, bool coarsest) {
+    std::vector<ClipmapScan> scans;
+    scans.emplace_back(grid, level, coarsest);
+    const bool holes = scanRows(grid, scans, nullptr);
+    Level result{{{{scans.front().blockColumns(), scans.front().blockRows()}, 0}}, scans.front().plain(), scans.front().blending()};
+    if (!holes) return result;
+    Holes correction(grid);
+    Level none;
+    for (int finer = 0; finer < level; ++finer) correction.correct(none, finer, glm::ivec2(0));
+    correction.correct(result, level, result.layers.front().blocks);
+    return result;
+}
+
+void ClipmapErrors::updateLayers(const Level& level, std::vector<float>& errors, glm::ivec2 low, glm::ivec2 high) {
+    for (std::size_t i = 1; i < level.layers.size(); ++i) {
+        const Layer &fine = level.layers[i - 1], &coarse = level.layers[i];
+        low /= 2;
+        high /= 2;
+        for (int row = low.y; row <= high.y; ++row)
+            for (int column = low.x; column <= high.x; ++column) {
+                float largest = 0.0f;
+                for (int y = 2 * row; y < std::min(2 * row + 2, fine.blocks.y); ++y)
+                    for (int x = 2 * column; x < std::min(2 * column + 2, fine.blocks.x); ++x)
+                        largest = std::max(largest, errors[fine.first + std::size_t(y) * std::size_t(fine.blocks.x) + std::size_t(x)]);
+                errors[coarse.first + std::size_t(row) * std::size_t(coarse.blocks.x) + std::size_t(column)] = largest;
+            }
+    }
+}
+
+void ClipmapErrors::updateLevel(const SampleGrid& grid, int number, const SampleRect& rect) {
+    Level& level = levels_[std::size_t(number)];
+    const glm::ivec2 last(grid.columns() - 1, grid.rows() - 1), blocks = level.layers.front().blocks;
+    const int step = 1 << number, width = kBlockCells << number;
+    // A vertex of the level changes the cells around it and, where the coarser level has it, what its neighbours blend towards.
+    const auto hasVertex = [&](int axis) { return rect.high[axis] == last[axis] || rect.high[axis] / step > (rect.low[axis] - 1 + step) / step - 1; };
+    const SampleRect around = rect.widened(hasVertex(0) && hasVertex(1) ? 3 * step : 1).cutTo({glm::ivec2(0), last});
+    const glm::ivec2 low = glm::min(around.low / width, blocks - 1), high = glm::min(around.high / width, blocks - 1);
+    SampleRect part{low * width, glm::min((high + 1) * width, last)};
+    const bool isExact = part.samples() <= kExactly;
+    // Whole cells of the coarser level at least.
+    if (!isExact) part = {around.low / (2 * step) * (2 * step), glm::min((around.high / (2 * step) + 1) * (2 * step), last)};
+    if (part.columns() < 2) part.low.x = std::max(0, part.low.x - 2 * step);
+    if (part.rows() < 2) part.low.y = std::max(0, part.low.y - 2 * step);
+    const Level now = measured(grid.part(part.low.x, part.low.y, part.columns(), part.rows()), number, number + 1 == levels());
+    const auto take = [&](std::vector<float>& errors, const std::vector<float>& found) {
+        if (errors.empty()) return;
+        const float largest = *std::max_element(found.begin(), found.end());
+        for (int row = low.y; row <= high.y; ++row)
+            for (int column = low.x; column <= high.x; ++column) {
+                float& error = errors[std::size_t(row) * std::size_t(blocks.x) + std::size_t(column)];
+                const std::size_t at = std::size_t(row - low.y) * std::size_t(high.x - low.x + 1) + std::size_t(column - low.x);
+                error = isExact ? found[at] : std::max(error, largest);
+            }
+        updateLayers(level, errors, low, high);
+    };
+    take(level.plain, now.plain);
+    take(level.blending, now.blending);
+}
+
+void ClipmapErrors::update(const SampleGrid& grid, const GridEdits& edits) {
+    for (int level = 0; level < levels(); ++level)
+        for (const SampleRect& rect : edits.rects) updateLevel(grid, level, rect);
 }
 
 float ClipmapErrors::error(int sourceLevel, bool blending, int layer, glm::ivec2 block) const {

@@ -7,6 +7,8 @@
 #include <glm/vec2.hpp>
 
 #include "base/View.h"
+#include "height/EditLog.h"
+#include "height/SampleGate.h"
 #include "height/SampleGrid.h"
 #include "lod/BoxPyramid.h"
 #include "lod/ClipmapLayout.h"
@@ -34,7 +36,13 @@ public:
     ClipmapErrors() = default;
     /// Of levels 0 to levels - 1. Takes about 25 ns a sample, and goes over the samples once in order: rows ahead of it are read
     /// only where they hold vertices of a level.
-    ClipmapErrors(const SampleGrid& grid, int levels);
+    /// `gate`: held for some rows at a time; null where nobody edits meanwhile.
+    ClipmapErrors(const SampleGrid& grid, int levels, SampleGate* gate = nullptr);
+
+    /// Samples have changed, of a grid of the same size and kind: brings up to date what depends on them. Blocks of coarse levels are
+    /// large; where they hold more samples than kExactly, errors only grow, to a bound that may be larger than exact.
+    void update(const SampleGrid& grid, const GridEdits& edits);
+    static constexpr std::int64_t kExactly = std::int64_t(1) << 21;
 
     int levels() const { return int(levels_.size()); }
     /// Layers of a level's pyramid, and blocks of each along both axes: of kBlockCells * 2^layer cells of the level.
@@ -65,8 +73,11 @@ private:
     class Holes;
     class Search;
     const Layer& layerOf(int sourceLevel, int layer) const { return levels_[std::size_t(sourceLevel)].layers[std::size_t(layer)]; }
-    void scan(const SampleGrid& grid);
+    void scan(const SampleGrid& grid, SampleGate* gate);
     void buildLayers();
+    void updateLevel(const SampleGrid& grid, int level, const SampleRect& rect);
+    static Level measured(const SampleGrid& grid, int level, bool coarsest);
+    static void updateLayers(const Level& level, std::vector<float>& errors, glm::ivec2 low, glm::ivec2 high);
 
     std::vector<Level> levels_;
 };

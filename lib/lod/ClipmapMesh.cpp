@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/ProfileScope.h"
 #include "lod/ClipmapSurface.h"
@@ -75,8 +76,9 @@ DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const Lod
     const ProfileScope scope("clipmap: select and list");
     newVertices_.clear();
     DrawList list;
-    const std::shared_ptr<const ClipmapErrors> errors = errors_ ? errors_() : nullptr;
-    if (view_ != view || settings_ != settings || errorsUsed_ != errors || !report_.converged) {
+    const std::shared_ptr<const ClipmapErrors> errors = errors_ ? errors_(grid) : nullptr;
+    if (view_ != view || settings_ != settings || errorsUsed_ != errors || wasEdited_ || !report_.converged) {
+        wasEdited_ = false;
         const bool turned = !view_ || settings_.clockwise != settings.clockwise;
         view_ = view;
         settings_ = settings;
@@ -95,7 +97,7 @@ DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const Lod
             share(grid, level, frame);
             if (writePositions(grid, level)) list.positionsChanged = true;
         }
-        if (turned || placesChanged_ || !std::equal(std::begin(drawn_.by), std::end(drawn_.by), frame.patches.by)) {
+        if (turned || placesChanged_ || std::exchange(holesChanged_, false) || !std::equal(std::begin(drawn_.by), std::end(drawn_.by), frame.patches.by)) {
             emit(frame.patches);
             drawn_ = frame.patches;
             list.indicesChanged = true;
@@ -111,6 +113,13 @@ DrawList ClipmapMesh::select(const SampleGrid& grid, const View& view, const Lod
     list.newVertices = newVertices_;
     list.report = report_;
     return list;
+}
+
+bool ClipmapMesh::update(const SampleGrid&, const GridEdits& edits) {
+    clipmap_.update(edits);
+    wasEdited_ = true;
+    holesChanged_ = holesChanged_ || edits.holes;
+    return true;
 }
 
 void ClipmapMesh::findAxes(const SampleGrid& grid) {

@@ -37,7 +37,7 @@ namespace terrain {
 /// and `geomorph` are not used: transitions are part of the method.
 class ClipmapMesh : public LodAlgorithm {
 public:
-    using Errors = std::function<std::shared_ptr<const ClipmapErrors>()>;
+    using Errors = std::function<std::shared_ptr<const ClipmapErrors>(const SampleGrid&)>;
     static constexpr int kChunk = 16;
 
     /// `errors` is asked in every selection and may give none as long as there are none; it may be empty. `detail` may be null, and
@@ -51,6 +51,7 @@ public:
                 std::shared_ptr<const BoxPyramid> boxes, Errors errors, std::shared_ptr<const SynthesisedDetail> detail);
 
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
+    bool update(const SampleGrid& grid, const GridEdits& edits) override;
     std::size_t bytes() const override;
 
     const Clipmap& clipmap() const { return clipmap_; }
@@ -129,7 +130,8 @@ private:
     std::vector<float> scratch_, shares_;
     std::vector<glm::vec3> points_;
     std::size_t indexCount_ = 0, firstSeam_ = 0;
-    bool isFitted_ = false;  ///< the size is that of an earlier view, by errors
+    bool wasEdited_ = false, holesChanged_ = false;  ///< since the last selection
+    bool isFitted_ = false;                          ///< the size is that of an earlier view, by errors
     SelectionReport report_;
 };
 

@@ -7,6 +7,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "height/SampleRect.h"
+
 namespace terrain {
 
 /// Index of a vertex that does not exist: outside of the grid or in a hole.
@@ -34,6 +36,7 @@ struct DrawList {
     std::size_t seamIndices = 0;
     std::span<const std::uint32_t> newVertices;  ///< vertices that stand for another sample than at the last selection
     bool wholeGrid = false;                      ///< vertex i is sample i: positions, samples and newVertices are empty
+    std::span<const SampleRect> changedSamples;  ///< of a whole grid: those to be sent again when positionsChanged is false
     bool positionsChanged = false;               ///< since the last selection
     bool indicesChanged = false;                 ///< when not, indices may be empty: what was drawn last is drawn again
     SelectionReport report;

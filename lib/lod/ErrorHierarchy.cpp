@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <unordered_set>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -47,6 +48,28 @@ private:
     std::size_t pitch_ = 0;
     std::vector<float> packed_;
     mutable ResidentRows resident_;  ///< small diamonds go over the rows in order, large ones each over many
+};
+
+/// The same where they are, for going over some of them only.
+class HeightsInPlace {
+public:
+    using Value = float;
+    explicit HeightsInPlace(const SampleGrid& grid) : grid_(grid), resident_(grid.residentRows()) {}
+    float at(glm::ivec2 p) const { return grid_.height(p.x, p.y); }
+    float rowDeviation(int row, int first, int last, float start, float step) const {
+        const std::size_t stride = grid_.heightStride();
+        const float* sample = grid_.heightRow(row) + std::size_t(first) * stride;
+        float deviation = 0.0f;
+#pragma omp simd reduction(max : deviation)
+        for (int i = 0; i <= last - first; ++i)
+            deviation = std::max(deviation, std::fabs(sample[std::size_t(i) * stride] - (start + float(i) * step)));
+        resident_.visit(row);
+        return deviation;
+    }
+
+private:
+    const SampleGrid& grid_;
+    mutable ResidentRows resident_;
 };
 
 class CurvedPoints {
@@ -175,8 +198,14 @@ public:
         }
         if (hasHoles_) states_.assign(std::size_t(grid.columns()) * std::size_t(grid.rows()), 0);
     }
+    /// Of a grid that has changed, with what states() gave before. Without holes before, there is none: then all are full.
+    Coverage(const SampleGrid& grid, bool hasHoles, std::vector<std::uint8_t> states)
+        : grid_(grid), hasHoles_(hasHoles), states_(std::move(states)) {
+        if (hasHoles_) states_.resize(std::size_t(grid.columns()) * std::size_t(grid.rows()), 0);
+    }
 
     bool hasHoles() const { return hasHoles_; }
+    std::vector<std::uint8_t>&& states() { return std::move(states_); }
 
     /// Children must have been asked for before, but for finest ones. `half` is 0 for the triangle at q1, 1 for the one at q3.
     State triangle(const DiamondShape& d, int half) {
@@ -216,37 +245,83 @@ private:
     std::vector<std::uint8_t> states_;
 };
 
-/// Visits all diamonds whose centres lie in the grid, children before parents, without the finest.
+/// Visits all diamonds whose centres lie in `part` of the grid once it is widened by `reach` of their sizes, children before parents,
+/// without the finest.
 template <class Visit>
-void forEachDiamondUpwards(int columns, int rows, int side, Visit visit) {
+void forEachDiamondUpwards(const SampleRect& grid, const SampleRect& part, int reach, int side, Visit visit) {
+    // The first number from `from` on that is `offset` more than a multiple of `step`.
+    const auto firstFrom = [](int from, int offset, int step) { return offset + (std::max(0, from - offset) + step - 1) / step * step; };
     for (int s = 1; s < side; s *= 2) {
-        for (int y = 0; y < rows && s > 1; y += s)
-            for (int x = (y & s) ? 0 : s; x < columns; x += 2 * s) visit(DiamondShape({x, y}));
-        for (int y = s; y < rows; y += 2 * s)
-            for (int x = s; x < columns; x += 2 * s) visit(DiamondShape({x, y}));
+        const SampleRect at = part.widened(reach * s).cutTo(grid);
+        for (int y = firstFrom(at.low.y, 0, s); y <= at.high.y && s > 1; y += s)
+            for (int x = firstFrom(at.low.x, (y & s) ? 0 : s, 2 * s); x <= at.high.x; x += 2 * s) visit(DiamondShape({x, y}));
+        for (int y = firstFrom(at.low.y, s, 2 * s); y <= at.high.y; y += 2 * s)
+            for (int x = firstFrom(at.low.x, s, 2 * s); x <= at.high.x; x += 2 * s) visit(DiamondShape({x, y}));
     }
+}
+
+SampleRect whole(const SampleGrid& grid) {
+    return {glm::ivec2(0), glm::ivec2(grid.columns() - 1, grid.rows() - 1)};
 }
 
 /// Fills `codes`, of which placeOf(centre) is the diamond's.
 template <class Samples, class PlaceOf>
-void measure(const Samples& samples, const SampleGrid& grid, Coverage& coverage, int side, std::vector<std::uint16_t>& codes,
-             PlaceOf placeOf) {
-    forEachDiamondUpwards(grid.columns(), grid.rows(), side, [&](const DiamondShape& d) {
+class Measurement {
+public:
+    Measurement(const SampleGrid& grid, Coverage& coverage, std::vector<std::uint16_t>& codes, PlaceOf placeOf)
+        : grid_(grid), samples_(grid), coverage_(coverage), codes_(codes), placeOf_(placeOf) {}
+
+    void operator()(const DiamondShape& d) {
         float deviation = 0.0f;
         for (int half = 0; half < 2; ++half) {
-            const State state = coverage.triangle(d, half);
+            const State state = coverage_.triangle(d, half);
             if (state == Mixed) deviation = kInfinity;
-            if (state == Full) deviation = std::max(deviation, triangleDeviation(samples, d, half));
+            if (state == Full) deviation = std::max(deviation, triangleDeviation(samples_, d, half));
         }
         std::uint16_t code = ErrorHierarchy::encode(deviation);
         for (int side = 0; side < 4; ++side) {
             const glm::ivec2 child = d.child(side);
-            if (!grid.contains(child.x, child.y)) continue;
+            if (!grid_.contains(child.x, child.y)) continue;
             // A finest child's centre is among the samples of the parent, but rounded along another way.
-            code = std::max(code, d.size == 1 && d.isSquare ? finestCode(grid, DiamondShape(child), !coverage.hasHoles())
-                                                            : codes[placeOf(child)]);
+            code = std::max(code, d.size == 1 && d.isSquare ? finestCode(grid_, DiamondShape(child), !coverage_.hasHoles())
+                                                            : codes_[placeOf_(child)]);
         }
-        codes[placeOf(d.centre)] = code;
+        codes_[placeOf_(d.centre)] = code;
+    }
+
+private:
+    const SampleGrid& grid_;
+    Samples samples_;
+    Coverage& coverage_;
+    std::vector<std::uint16_t>& codes_;
+    PlaceOf placeOf_;
+};
+
+template <class Samples, class PlaceOf>
+void measure(const SampleGrid& grid, int side, Coverage& coverage, std::vector<std::uint16_t>& codes, PlaceOf placeOf) {
+    forEachDiamondUpwards(whole(grid), whole(grid), 0, side, Measurement<Samples, PlaceOf>(grid, coverage, codes, placeOf));
+}
+
+/// The same for diamonds that cover changed samples, and for those whose children have another error now.
+template <class Samples, class PlaceOf>
+void measureAgain(const SampleGrid& grid, const SampleRect& changed, int side, Coverage& coverage, std::vector<std::uint16_t>& codes,
+                  PlaceOf placeOf) {
+    Measurement<Samples, PlaceOf> measurement(grid, coverage, codes, placeOf);
+    std::unordered_set<std::size_t> others;
+    const auto isDue = [&](const DiamondShape& d) {
+        // Errors of the finest are not stored.
+        const int reach = d.size == 1 ? 2 : d.size;
+        if (changed.touches({d.centre - reach, d.centre + reach})) return true;
+        for (int i = 0; i < 4 && d.size > 1; ++i)
+            if (const glm::ivec2 child = d.child(i); grid.contains(child.x, child.y) && others.contains(placeOf(child))) return true;
+        return false;
+    };
+    forEachDiamondUpwards(whole(grid), changed, ErrorHierarchy::kReach, side, [&](const DiamondShape& d) {
+        if (!isDue(d)) return;
+        const std::size_t place = placeOf(d.centre);
+        const std::uint16_t before = codes[place];
+        measurement(d);
+        if (codes[place] != before) others.insert(place);
     });
 }
 
@@ -268,9 +343,31 @@ ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()
     codes_.assign(std::size_t((columns_ + 1) / 2) * std::size_t(rows_), 0);
     const auto placeOf = [this](glm::ivec2 centre) { return place(centre); };
     if (grid.isRegular())
-        measure(PackedHeights(grid), grid, coverage, side(), codes_, placeOf);
+        measure<PackedHeights>(grid, side(), coverage, codes_, placeOf);
     else
-        measure(CurvedPoints(grid), grid, coverage, side(), codes_, placeOf);
+        measure<CurvedPoints>(grid, side(), coverage, codes_, placeOf);
+}
+
+void ErrorHierarchy::update(const SampleGrid& grid, const SampleRect& rect, bool hasHoles) {
+    const SampleRect changed = rect.cutTo(terrain::whole(grid));
+    if (changed.isEmpty()) return;
+    if (hasHoles && hasHoles_ && states_.empty()) {
+        // They are not kept when building: most grids are never edited.
+        Coverage coverage(grid, true, {});
+        forEachDiamondUpwards(terrain::whole(grid), terrain::whole(grid), 0, side(), [&](const DiamondShape& d) {
+            for (int half = 0; half < 2; ++half) coverage.triangle(d, half);
+        });
+        states_ = coverage.states();
+    }
+    Coverage coverage(grid, hasHoles, hasHoles ? std::move(states_) : std::vector<std::uint8_t>());
+    hasHoles_ = hasHoles;
+    whole_ = !hasHoles_ && columns_ == side() + 1 && rows_ == side() + 1;
+    const auto placeOf = [this](glm::ivec2 centre) { return place(centre); };
+    if (grid.isRegular())
+        measureAgain<HeightsInPlace>(grid, changed, side(), coverage, codes_, placeOf);
+    else
+        measureAgain<CurvedPoints>(grid, changed, side(), coverage, codes_, placeOf);
+    states_ = coverage.states();
 }
 
 float ErrorHierarchy::error(const SampleGrid& grid, const DiamondShape& d) const {

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include "height/SampleGrid.h"
+#include "height/SampleRect.h"
 #include "lod/DiamondTopology.h"
 
 namespace terrain {
@@ -30,6 +31,15 @@ public:
     ErrorHierarchy() = default;
     explicit ErrorHierarchy(const SampleGrid& grid);
 
+    /// Samples within `rect` have changed, of a grid of the same size and kind: brings up to date what depends on them. Bit for bit
+    /// what building it anew gives. `hasHoles`: whether any sample is one now. It goes over the samples of all diamonds that hold
+    /// changed ones: about three times the grid's at most, in consecutive rows.
+    void update(const SampleGrid& grid, const SampleRect& rect, bool hasHoles);
+
+    /// The error of a diamond depends on samples within so many times its size of its centre: because errors are monotone, on all that
+    /// its children's depend on, half of whose triangles are not its own.
+    static constexpr int kReach = 3;
+
     /// n: the square has 2^n cells a side; 0 for a grid of a single cell.
     int exponent() const { return exponent_; }
     int side() const { return 1 << exponent_; }
@@ -39,7 +49,7 @@ public:
     /// True when every triangle is to be drawn: no holes, and the grid fills its square.
     bool isWhole() const { return whole_; }
     bool hasHoles() const { return hasHoles_; }
-    std::size_t bytes() const { return codes_.capacity() * sizeof(std::uint16_t); }
+    std::size_t bytes() const { return codes_.capacity() * sizeof(std::uint16_t) + states_.capacity(); }
 
     static std::uint16_t encode(float error);
     static float decode(std::uint16_t code) { return std::bit_cast<float>(std::uint32_t(code) << 15); }
@@ -56,6 +66,8 @@ private:
     bool whole_ = true;
     bool hasHoles_ = false;
     std::vector<std::uint16_t> codes_;
+    /// By centre, of both triangles: whether they lie in the valid part. Kept from the first update of a grid with holes on.
+    std::vector<std::uint8_t> states_;
 };
 
 }  // namespace terrain

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/VectorClones.h"
 
@@ -126,30 +127,45 @@ GeoMipmapErrors::Program GeoMipmapErrors::programFor(const GeoMipmapShape& shape
     return program;
 }
 
-GeoMipmapErrors::GeoMipmapErrors(const SampleGrid& grid, int tileSize)
+GeoMipmapErrors::GeoMipmapErrors(const SampleGrid& grid, int tileSize, std::shared_ptr<const EditLog> edits)
     : layout_(grid.columns(), grid.rows(), tileSize), regular_(grid.isRegular()),
-      slots_(std::size_t(layout_.exponent + 2 * layout_.exponent * (layout_.exponent + 1))) {
+      slots_(std::size_t(layout_.exponent + 2 * layout_.exponent * (layout_.exponent + 1))), edits_(std::move(edits)),
+      version_(edits_ ? edits_->version() : 0) {
     for (int i = 0; i < 4; ++i)
         shapes_.emplace_back(layout_.width(i % 2 ? layout_.blockColumns - 1 : 0), layout_.height(i / 2 ? layout_.blockRows - 1 : 0),
                              layout_.exponent);
     codes_.resize(layout_.blockCount() * slots_);
     flags_.resize(layout_.blockCount());
     bounds_.push_back({layout_.blockColumns, layout_.blockRows, std::vector<float>(layout_.blockCount() * (regular_ ? 2 : 6))});
-    build(grid);
+    build(grid, glm::ivec2(0), glm::ivec2(layout_.blockColumns, layout_.blockRows) - 1);
     buildBounds();
 }
 
-void GeoMipmapErrors::build(const SampleGrid& grid) {
+void GeoMipmapErrors::follow(const SampleGrid& grid) {
+    if (!edits_ || edits_->version() == version_) return;
+    const SampleRect all{glm::ivec2(0), glm::ivec2(layout_.columns, layout_.rows) - 1};
+    const GridEdits edits = edits_->since(version_).value_or(GridEdits{{all}, true});
+    version_ = edits_->version();
+    const glm::ivec2 last = glm::ivec2(layout_.blockColumns, layout_.blockRows) - 1;
+    // Samples on a border belong to the blocks on both sides.
+    for (const SampleRect& rect : edits.rects)
+        build(grid, glm::min(glm::max(rect.low - 1, glm::ivec2(0)) / layout_.tileSize, last), glm::min(rect.high / layout_.tileSize, last));
+    bounds_.resize(1);
+    buildBounds();
+}
+
+void GeoMipmapErrors::build(const SampleGrid& grid, glm::ivec2 low, glm::ivec2 high) {
     std::vector<Program> programs;
     for (const GeoMipmapShape& shape : shapes_) programs.push_back(programFor(shape));
     Lanes lanes;
     const std::size_t axes = regular_ ? 1 : 3, pitch = std::size_t(GeoMipmapShape::pitch(layout_.exponent));
     lanes.values.assign(pitch * pitch * axes * kLanes, 0.0f);
     lanes.results.resize((slots_ + 1) * kLanes);
-    for (int row = 0; row < layout_.blockRows; ++row) {
-        for (int column = 0; column < layout_.blockColumns;) {
+    for (int row = low.y; row <= high.y; ++row) {
+        for (int column = low.x; column <= high.x;) {
             // Blocks of one shape together: those up to the last column.
-            const int last = layout_.blockColumns - 1, count = column == last ? 1 : std::min(int(kLanes), last - column);
+            const int last = layout_.blockColumns - 1;
+            const int count = column == last ? 1 : std::min({int(kLanes), last - column, high.x + 1 - column});
             const std::size_t first = layout_.block(column, row);
             const GeoMipmapShape& block = shape(column, row);
             const Program& program = programs[std::size_t(&block - shapes_.data())];
@@ -207,6 +223,7 @@ void GeoMipmapErrors::load(const SampleGrid& grid, glm::ivec2 first, int count, 
 void GeoMipmapErrors::store(const Program& program, const GeoMipmapShape& shape, std::size_t block, std::size_t lane,
                             const Lanes& lanes) {
     std::uint16_t* codes = &codes_[block * slots_];
+    flags_[block] = 0;
     const auto result = [&](std::size_t slot) { return program.exists[slot] ? lanes.results[slot * kLanes + lane] : kInfinity; };
     for (std::size_t slot = 0; slot < slots_; ++slot) codes[slot] = ErrorHierarchy::encode(result(slot));
     const std::size_t flat = std::size_t(layout_.exponent) - 1;

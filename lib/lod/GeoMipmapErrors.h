@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "height/EditLog.h"
 #include "height/SampleGrid.h"
 #include "lod/BoxPyramid.h"
 #include "lod/ErrorHierarchy.h"
@@ -24,8 +26,11 @@ class GeoMipmapErrors {
 public:
     static constexpr int kSmallestTile = 2, kLargestTile = GeoMipmapShape::kLargestTile;
 
-    /// `tileSize`: a power of two from kSmallestTile to kLargestTile.
-    GeoMipmapErrors(const SampleGrid& grid, int tileSize);
+    /// `tileSize`: a power of two from kSmallestTile to kLargestTile. `edits`: of the grid; null where it never changes.
+    GeoMipmapErrors(const SampleGrid& grid, int tileSize, std::shared_ptr<const EditLog> edits = nullptr);
+
+    /// Brings up to date what depends on samples that have changed since it was last told. What building it anew gives.
+    void follow(const SampleGrid& grid);
 
     const BlockLayout& layout() const { return layout_; }
     const GeoMipmapShape& shape(int column, int row) const {
@@ -68,7 +73,8 @@ private:
         return n + 4 * (level * n - level * (level - 1) / 2 + borderLevel - level - 1) + side;
     }
     Program programFor(const GeoMipmapShape& shape) const;
-    void build(const SampleGrid& grid);
+    /// Blocks from `low` to `high`, both included.
+    void build(const SampleGrid& grid, glm::ivec2 low, glm::ivec2 high);
     void load(const SampleGrid& grid, glm::ivec2 first, int count, Lanes& lanes);
     void store(const Program& program, const GeoMipmapShape& shape, std::size_t block, std::size_t lane, const Lanes& lanes);
     void storeHoles(const SampleGrid& grid, const GeoMipmapShape& shape, std::size_t block);
@@ -81,6 +87,8 @@ private:
     std::vector<std::uint16_t> codes_;
     std::vector<std::uint8_t> flags_;
     std::vector<BoundsLevel> bounds_;
+    std::shared_ptr<const EditLog> edits_;
+    std::uint64_t version_ = 0;  ///< of the edits that are in it
 };
 
 }  // namespace terrain

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/common.hpp>
 
@@ -10,7 +11,7 @@
 
 namespace terrain {
 
-GeoMipmapMesh::GeoMipmapMesh(std::shared_ptr<const GeoMipmapErrors> errors)
+GeoMipmapMesh::GeoMipmapMesh(std::shared_ptr<GeoMipmapErrors> errors)
     : errors_(std::move(errors)), layout_(errors_->layout()), vertices_(errors_), detail_(layout_), factor_(layout_.blockCount()),
       queued_(layout_.blockCount()), emitted_(layout_.blockCount()) {}
 
@@ -18,8 +19,10 @@ DrawList GeoMipmapMesh::select(const SampleGrid& grid, const View& view, const L
     const ProfileScope scope("geo mip-mapping: select");
     vertices_.forgetNewVertices();
     DrawList drawList;
-    if (view_ != view || settings_ != settings) {
-        const bool otherTriangles = !view_ || settings_.clockwise != settings.clockwise ||
+    if (view_ != view || settings_ != settings || !edits_.isEmpty()) {
+        // Of blocks that have changed, diagonals and holes may be others.
+        const GridEdits edits = std::exchange(edits_, {});
+        const bool otherTriangles = !view_ || !edits.isEmpty() || settings_.clockwise != settings.clockwise ||
                                     settings_.geomorph != settings.geomorph ||
                                     (settings_.pixelError > 0.0f) != (settings.pixelError > 0.0f);
         view_ = view;
@@ -31,6 +34,7 @@ DrawList GeoMipmapMesh::select(const SampleGrid& grid, const View& view, const L
         list();
         if (otherTriangles || drawn_ != drawnBefore_) {
             vertices_.update(grid, drawn_, drawnBefore_);
+            vertices_.placeAgain(grid, drawn_, edits);
             emit(grid, otherTriangles);
             drawList.indicesChanged = true;
             drawList.positionsChanged = !vertices_.newVertices().empty();
@@ -47,6 +51,12 @@ DrawList GeoMipmapMesh::select(const SampleGrid& grid, const View& view, const L
     drawList.newVertices = vertices_.newVertices();
     drawList.report = report_;
     return drawList;
+}
+
+bool GeoMipmapMesh::update(const SampleGrid& grid, const GridEdits& edits) {
+    errors_->follow(grid);
+    edits_.include(edits);
+    return true;
 }
 
 void GeoMipmapMesh::list() {

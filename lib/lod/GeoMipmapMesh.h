@@ -34,9 +34,11 @@ public:
     /// moves faster than at 2 pixels, that part grows with the square of pixelError.
     static float morphStart(float pixelError);
 
-    explicit GeoMipmapMesh(std::shared_ptr<const GeoMipmapErrors> errors);
+    /// The table, which may be shared by meshes, must be of the grid that select() is given.
+    explicit GeoMipmapMesh(std::shared_ptr<GeoMipmapErrors> errors);
 
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
+    bool update(const SampleGrid& grid, const GridEdits& edits) override;
     std::size_t bytes() const override;
 
     /// Level of a block; -1 when it was not drawn.
@@ -75,11 +77,12 @@ private:
     float boundError() const;
     float boundSides(const BlockAt& at) const;
 
-    std::shared_ptr<const GeoMipmapErrors> errors_;
+    std::shared_ptr<GeoMipmapErrors> errors_;
     BlockLayout layout_;
     GeoMipmapVertices vertices_;
     LodSettings settings_;
     std::optional<View> view_;
+    GridEdits edits_;  ///< since the last selection
     bool morphing_ = false;
     float limit_ = 0.0f;  ///< pixels up to which a level is taken
 

@@ -163,6 +163,23 @@ void GeoMipmapVertices::update(const SampleGrid& grid, std::span<const DrawnBloc
         if (ranges_[number].users == 0 && ranges_[number].level != kUnused) release(number);
 }
 
+void GeoMipmapVertices::placeAgain(const SampleGrid& grid, std::span<const DrawnBlock> blocks, const GridEdits& edits) {
+    if (edits.isEmpty()) return;
+    const GridEdits around = edits.widened(1);
+    std::vector<std::uint32_t> touched;
+    for (const DrawnBlock& drawn : blocks) {
+        const glm::ivec2 from = glm::ivec2(drawn.at.column, drawn.at.row) * layout_.tileSize;
+        if (!around.touches({from, from + layout_.tileSize})) continue;
+        for (const std::uint32_t number : rangesOf(drawn.at)) touched.push_back(number);
+    }
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const std::uint32_t number : touched) {
+        const Extent e = extent(number, ranges_[number].level);
+        if (e.count.x * e.count.y > 0) place(grid, number, true);
+    }
+}
+
 void GeoMipmapVertices::forget(std::span<const DrawnBlock> blocks) {
     for (const DrawnBlock& drawn : blocks) {
         states_[drawn.at.number] = {};

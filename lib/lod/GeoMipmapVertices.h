@@ -60,6 +60,10 @@ public:
     /// Makes the vertices of these blocks, at their true positions, and gives up all others. `before` is what was given last.
     void update(const SampleGrid& grid, std::span<const DrawnBlock> blocks, std::span<const DrawnBlock> before);
 
+    /// Puts those of these blocks, which are drawn, to their true positions whose samples have changed or are next to one that has, and
+    /// lists them as new.
+    void placeAgain(const SampleGrid& grid, std::span<const DrawnBlock> blocks, const GridEdits& edits);
+
     /// The vertices of a block by GeoMipmapShape's places; valid until the next call. Only what the block draws is set.
     const std::uint32_t* of(const DrawnBlock& drawn);
 

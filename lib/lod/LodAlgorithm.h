@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/View.h"
+#include "height/EditLog.h"
 #include "height/SampleGrid.h"
 #include "lod/DrawList.h"
 
@@ -32,6 +33,10 @@ public:
     virtual ~LodAlgorithm() = default;
     /// The same calls in the same order give the same results. The list is valid until the next call.
     virtual DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) = 0;
+    /// Samples of the grid have changed, and bounds and errors of the model have been brought up to date with them. The next
+    /// selections are to show it, and to list as new all vertices whose sample has changed or has a neighbour that has: their
+    /// normals are others. False where that takes a new mesh.
+    virtual bool update(const SampleGrid& /*grid*/, const GridEdits& /*edits*/) { return false; }
     /// Memory held.
     virtual std::size_t bytes() const = 0;
 };

@@ -162,6 +162,15 @@ std::size_t RoamBounds::append() {
 }
 
 RoamBounds::RoamBounds(bool regular, const BoxPyramid::Bounds& all) : regular_(regular) {
+    rescale(all);
+}
+
+bool RoamBounds::holds(const BoxPyramid::Bounds& bounds) const {
+    if (!regular_ || bounds.isEmpty()) return true;
+    return heightStep_ > 0.0f && bounds.low.z >= heightBase_ && bounds.high.z <= heightBase_ + 65535.0f * heightStep_;
+}
+
+void RoamBounds::rescale(const BoxPyramid::Bounds& all) {
     if (all.isEmpty()) return;
     heightBase_ = all.low.z;
     heightStep_ = float((double(all.high.z) - double(all.low.z)) / 65535.0);

@@ -50,6 +50,10 @@ public:
 
     /// The samples within `size` of the centre have these bounds, and the diamond this error.
     void set(std::size_t number, glm::ivec2 centre, int size, const BoxPyramid::Bounds& bounds, float error);
+    /// Whether set() can hold these bounds: those of the whole grid may have grown since.
+    bool holds(const BoxPyramid::Bounds& bounds) const;
+    /// Steps for heights of bounds that have grown. All that is in use must be set again.
+    void rescale(const BoxPyramid::Bounds& all);
     /// Priority 0 from now on.
     void clear(std::size_t number);
 

@@ -43,6 +43,10 @@ public:
     /// say so. The same calls in the same order give the same results.
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
 
+    /// Takes new bounds, errors and vertices where diamonds hold changed samples; what is split stays split until the next selection
+    /// finds it needless. Not where holes come or go.
+    bool update(const SampleGrid& grid, const GridEdits& edits) override;
+
     /// Triangles of the whole mesh, those outside of the view included.
     std::uint32_t meshTriangles() const { return meshTriangles_; }
     std::size_t bytes() const override;
@@ -124,6 +128,11 @@ private:
     static unsigned cellBit(int dx, int dy) { return (dx > 0 ? 1u : 0u) | (dy > 0 ? 2u : 0u); }
     std::uint8_t findSolidCells(const SampleGrid& grid, glm::ivec2 centre) const;
 
+    // RoamUpdate.cpp: edits
+    void boundAgain(const SampleGrid& grid, const DiamondShape& shape, std::uint32_t number);
+    void addMissingChildren(const SampleGrid& grid, std::uint32_t number);
+    void moveVertices(const SampleGrid& grid, const GridEdits& edits);
+
     // RoamRefine.cpp: queues
     void prepare(const SampleGrid& grid, const View& view, const LodSettings& settings, bool wasDone);
     void evaluate(std::uint32_t number);
@@ -189,6 +198,8 @@ private:
     std::uint32_t operationCap_ = 0;  ///< splits stop here
     SelectionReport report_;
     bool positionsChanged_ = false;
+    bool wasEdited_ = false;             ///< since the last selection
+    std::vector<std::uint32_t> edited_;  ///< vertices whose position or normal has changed with it
     std::vector<std::uint32_t> moving_;  ///< split diamonds with t < 1, coarse ones first
     std::vector<std::uint32_t> moved_;   ///< vertices that were off their targets in the last frame
 };

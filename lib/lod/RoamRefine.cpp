@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -20,14 +21,16 @@ const auto kLowestFirst = [](const auto& a, const auto& b) { return a.priority >
 
 DrawList RoamMesh::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
     const bool isFirst = !space_;
-    const bool atRest = !isFirst && report_.converged && view == view_ && settings == settings_;
+    const bool atRest = !isFirst && !wasEdited_ && report_.converged && view == view_ && settings == settings_;
     SelectionReport last = report_;
     report_ = SelectionReport{};
-    positionsChanged_ = false;
+    positionsChanged_ = std::exchange(wasEdited_, false);
     // The corners are new to whoever draws the first list.
     if (!isFirst) newVertices_.clear();
     // A first mesh is all new, later ones but for a few vertices are not.
     if (newVertices_.capacity() > 4096 && newVertices_.empty()) newVertices_.shrink_to_fit();
+    newVertices_.insert(newVertices_.end(), edited_.begin(), edited_.end());
+    edited_.clear();
     if (atRest) {
         report_.triangles = last.triangles;
         report_.errorPixels = last.errorPixels;

@@ -93,6 +93,44 @@ public:
         return residents_.front().tile.get();
     }
 
+    /// Of these keys other tiles are built from now on: what is on its way is dropped, and what failed is tried again. Resident ones
+    /// stay until replace() or remove().
+    template <class IsOld>
+    void forget(const IsOld& isOld) {
+        jobs_->drop(isOld);
+        std::erase_if(failed_, isOld);
+        std::erase_if(sizes_, [&](const auto& entry) { return isOld(entry.first); });
+    }
+
+    /// A resident tile becomes another one.
+    void replace(const TileKey& key, std::shared_ptr<const Tile> tile) {
+        Resident& resident = *places_.at(key);
+        const std::size_t bytes = tile->bytes();
+        residentBytes_ = residentBytes_ - resident.bytes + bytes;
+        if (isTouched(resident)) touchedBytes_ = touchedBytes_ - resident.bytes + bytes;
+        peakBytes_ = std::max(peakBytes_, residentBytes_);
+        resident.bytes = bytes;
+        resident.tile = std::move(tile);
+    }
+
+    /// A resident tile goes.
+    void remove(const TileKey& key) {
+        const auto found = places_.find(key);
+        if (isTouched(*found->second)) touchedBytes_ -= found->second->bytes;
+        residentBytes_ -= found->second->bytes;
+        residents_.erase(found->second);
+        places_.erase(found);
+    }
+
+    /// All that are resident.
+    std::vector<TileKey> residentKeys() const {
+        std::vector<TileKey> keys;
+        for (const Resident& resident : residents_) keys.push_back(resident.key);
+        return keys;
+    }
+    /// A resident tile, without touching it.
+    const Tile& at(const TileKey& key) const { return *places_.at(key)->tile; }
+
     /// Takes in what was built, evicts, and lets workers start on this frame's requests instead of the last one's.
     void endFrame() {
         takeIn(jobs_->takeFinished());

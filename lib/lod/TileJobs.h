@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -114,6 +116,18 @@ public:
         return built;
     }
 
+    /// Drops results of these keys, those included that are still to come.
+    template <class IsOld>
+    void drop(const IsOld& isOld) {
+        std::vector<Finished> dropped;
+        const std::lock_guard lock(mutex_);
+        const auto old = std::partition(finished_.begin(), finished_.end(), [&](const Finished& f) { return !isOld(f.key); });
+        std::move(old, finished_.end(), std::back_inserter(dropped));
+        finished_.erase(old, finished_.end());
+        for (const auto& [key, bytes] : building_)
+            if (isOld(key)) old_.insert(key);
+    }
+
     /// Drops queue and results, those included that are still to come. Does not wait.
     void close() {
         std::vector<Finished> dropped;
@@ -163,7 +177,7 @@ private:
         const std::lock_guard lock(mutex_);
         building_.erase(*key);
         count(built);
-        if (!closed_) finished_.push_back(std::move(built));
+        if (old_.erase(*key) == 0 && !closed_) finished_.push_back(std::move(built));
         changed_.notify_all();
     }
 
@@ -212,6 +226,7 @@ private:
     std::condition_variable changed_;
     std::vector<Request> queue_;                                      ///< most urgent last
     std::unordered_map<TileKey, std::size_t, TileKeyHash> building_;  ///< with the estimate of its bytes
+    std::unordered_set<TileKey, TileKeyHash> old_;                    ///< of building_: to be dropped
     std::vector<Finished> finished_;
     std::size_t roomBytes_ = 0;
     std::size_t jobs_ = 0;

@@ -47,6 +47,8 @@ struct TileTree {
     int extent(int level) const { return level >= 0 ? tileCells << (level >> 1) : tileCells >> -(level >> 1); }
     int stride(int level) const { return level >= 2 ? 1 << (level >> 1) : 1; }
     glm::ivec2 firstSample(const TileId& id) const { return glm::ivec2(id.column, id.row) * extent(id.level); }
+    /// Of its cells, those beyond the grid included.
+    SampleRect samplesOf(const TileId& id) const { return {firstSample(id), firstSample(id) + extent(id.level)}; }
     /// Whether any cell of the grid lies in the tile.
     bool contains(const TileId& id) const {
         return id.column * extent(id.level) < columns - 1 && id.row * extent(id.level) < rows - 1;
@@ -75,5 +77,9 @@ struct TileMesh {
 /// Builds one tile. `parent` must be that of id, or null for the root. Any thread.
 std::shared_ptr<const TileMesh> buildTile(const TileSamples& samples, const TileTree& tree, const TileId& id,
                                           const TileMesh* parent);
+
+/// The same tile after samples have changed, none of which has become a hole or was one: its vertices stay, and its error is at least
+/// the exact one, at most what it was before or what its triangles with changed samples have. It does not morph.
+std::shared_ptr<const TileMesh> changedTile(const TileSamples& samples, const TileMesh& before, const GridEdits& edits);
 
 }  // namespace terrain

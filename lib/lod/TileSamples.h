@@ -9,17 +9,27 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "height/EditLog.h"
 #include "height/ResidentRows.h"
+#include "height/SampleGate.h"
 #include "height/SampleGrid.h"
 #include "lod/BoxPyramid.h"
 
 namespace terrain {
 
-/// Samples in the frame of a grid, immutable, in memory that lasts: heights of a regular grid, points of a curved one.
+/// Samples in the frame of a grid, in memory that lasts: heights of a regular grid, points of a curved one. They change only while
+/// the gate is held for that.
 class TileSamples {
 public:
     /// `owner` keeps the grid's memory; without it, or where heights do not lie one behind the other, they are copied.
-    TileSamples(const SampleGrid& grid, const BoxPyramid& boxes, std::shared_ptr<const void> owner);
+    /// `gate`: of who edits that memory; without it nobody does.
+    TileSamples(const SampleGrid& grid, const BoxPyramid& boxes, std::shared_ptr<const void> owner,
+                std::shared_ptr<SampleGate> gate = nullptr);
+
+    /// Samples of the grid, and its bounds with them, have changed.
+    void update(const SampleGrid& grid, const BoxPyramid& boxes, const GridEdits& edits);
+    /// To be held while they are read.
+    SampleGate& gate() const { return *gate_; }
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
@@ -40,11 +50,14 @@ public:
     std::size_t bytes() const { return copy_.capacity() * sizeof(float) + points_.capacity() * sizeof(glm::vec3); }
 
 private:
+    void readBounds(const SampleGrid& grid, const BoxPyramid& boxes);
+
     int columns_;
     int rows_;
-    bool hasHoles_;
+    bool hasHoles_ = false;
     float range_ = 0.0f;
     std::shared_ptr<const void> owner_;
+    std::shared_ptr<SampleGate> gate_;
     const float* heights_ = nullptr;
     std::size_t pitch_ = 0;
     ResidentRows resident_;

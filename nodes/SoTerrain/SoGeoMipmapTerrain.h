@@ -34,7 +34,7 @@ private:
     /// What is known of a grid, for as long as a view needs it.
     struct Table {
         std::weak_ptr<const terrain::BoxPyramid> grid;
-        std::weak_ptr<const terrain::GeoMipmapErrors> errors;
+        std::weak_ptr<terrain::GeoMipmapErrors> errors;
     };
 
     std::vector<Table> tables;

@@ -1,4 +1,4 @@
-// Property node: height data from a file.
+// Property node: height data from a file, or from the program.
 #ifndef SOTERRAIN_SOHEIGHTMAP_H
 #define SOTERRAIN_SOHEIGHTMAP_H
 
@@ -33,8 +33,23 @@ public:
     SoSFEnum rawType;        ///< UINT8
     SoSFFloat noData;        ///< sample value that marks a hole; NaN (the default) marks none
 
-    /// Whether the file that the fields name has been read; reads it if need be.
+    /// Whether the file that the fields name has been read, or heights were given by setHeights(); reads it if need be.
     SbBool isLoaded();
+
+    /// Columns and rows of the map. FALSE where there is none; then nothing is written.
+    SbBool getSize(int & columns, int & rows);
+
+    /// Replaces the heights of \a columns x \a rows samples from (\a column, \a row) on, counted from the south-west: \a heights are as
+    /// many floats, row after row from south to north without gaps (a rowstride of \a columns), as they are drawn: heightScale,
+    /// heightOffset and noData do not act on them. What is not finite becomes a hole. All nodes that draw the map follow in their next
+    /// frame, and picks, heights and boxes at once. FALSE, after a warning, for a rectangle that does not lie in the map, without a
+    /// map and for NULL; then nothing changes.
+    SbBool setHeights(int column, int row, int columns, int rows, const float * heights);
+    /// Makes a map of \a columns x \a rows samples of these heights, of a node without a filename: spacing (or 1) and origin say where
+    /// they stand. FALSE, after a warning, for fewer than 2 x 2 samples, for NULL and where there is a filename.
+    SbBool setHeights(int columns, int rows, const float * heights);
+    /// Writes the heights of a rectangle, as setHeights() takes them; holes are NaN. FALSE, after a warning, as there.
+    SbBool getHeights(int column, int row, int columns, int rows, float * heights);
 
     virtual void doAction(SoAction * action);
     virtual void GLRender(SoGLRenderAction * action);
@@ -50,7 +65,9 @@ protected:
     virtual void notify(SoNotList * list);
 
 private:
+    void bringUpToDate();
     void load();
+    void tellOfEdit();
 
     class Private;
     std::unique_ptr<Private> pimpl;

@@ -52,7 +52,7 @@ struct Scene {
           errors(std::make_shared<ClipmapErrors>(grid, layout.levels() - layout.detailLevels())),
           detail(std::make_shared<SynthesisedDetail>(grid, DetailShape{layout.detailLevels(), amplitude, 7})),
           mesh(
-              layout, options, boxes, [this] { return errors; }, detail) {}
+              layout, options, boxes, [this](const SampleGrid&) { return errors; }, detail) {}
     Scene(const Scene&) = delete;
 
     std::vector<UnitTriangle> triangles(const DrawList& list) const {

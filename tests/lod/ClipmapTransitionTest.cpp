@@ -123,7 +123,7 @@ TEST(ClipmapMesh, OfNoGivenSizeTakesTheOneThatEachViewNeeds) {
     const auto boxes = std::make_shared<BoxPyramid>(grid);
     const auto errors = std::make_shared<const ClipmapErrors>(grid, ClipmapLayout(300, 300, {15, 0, 0, 0}).levels());
     ClipmapMesh any(
-        300, 300, {0, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
+        300, 300, {0, 0, 0, 0}, {}, boxes, [&](const SampleGrid&) { return errors; }, nullptr);
     std::set<int> sizes;
     std::vector<std::uint32_t> samples;
     for (int i = 0; i < 12; ++i) {
@@ -135,7 +135,7 @@ TEST(ClipmapMesh, OfNoGivenSizeTakesTheOneThatEachViewNeeds) {
         EXPECT_TRUE(list.report.errorPixels <= settings.pixelError || size == ClipmapShape::kLargest);
         sizes.insert(size);
         ClipmapMesh fixed(
-            300, 300, {size, 0, 0, 0}, {}, boxes, [&] { return errors; }, nullptr);
+            300, 300, {size, 0, 0, 0}, {}, boxes, [&](const SampleGrid&) { return errors; }, nullptr);
         const DrawList same = fixed.select(grid, view, settings);
         ASSERT_EQ(list.indices.size(), same.indices.size());
         samples.resize(list.samples.size(), kNoVertex);
@@ -154,7 +154,7 @@ TEST(ClipmapMesh, TakesErrorsWhenTheyAreThere) {
     const ClipmapLayout layout(129, 129, {31, 0, 0, 0});
     std::shared_ptr<const ClipmapErrors> errors;
     ClipmapMesh mesh(
-        layout, {}, std::make_shared<BoxPyramid>(grid), [&] { return errors; }, nullptr);
+        layout, {}, std::make_shared<BoxPyramid>(grid), [&](const SampleGrid&) { return errors; }, nullptr);
     ClipmapMesh without(layout, {}, std::make_shared<BoxPyramid>(grid), {}, nullptr);
     const View view = flightView(terrain.box(), 1, 10);
     EXPECT_TRUE(std::isinf(mesh.select(grid, view, {}).report.errorPixels));

@@ -20,7 +20,7 @@ namespace {
 /// What rounding positions to floats may add.
 constexpr double kRounding = 0.03;
 
-std::shared_ptr<const GeoMipmapErrors> errorsOf(const SampleGrid& grid, int tileSize)
+std::shared_ptr<GeoMipmapErrors> errorsOf(const SampleGrid& grid, int tileSize)
 {
     return std::make_shared<GeoMipmapErrors>(grid, tileSize);
 }
