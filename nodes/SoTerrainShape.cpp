@@ -296,7 +296,12 @@ void SoTerrainShape::Private::bringUpToDate(TerrainView & view, const TerrainGri
     const bool sameGrid = view.boxes == data.model.boxes && view.localFromFrame == data.grid.localFromFrame();
     const auto edits = sameGrid && data.model.edits ? data.model.edits->since(view.edits) : std::optional<terrain::GridEdits>(terrain::GridEdits{});
     if (!sameGrid || !edits) TerrainViews::discardDrawing(view);
-    if (!sameGrid || !edits || view.meshVersion != meshVersion) view.algorithm.reset();
+    if (!sameGrid || !edits || view.meshVersion != meshVersion) {
+        // What it shares with others of its kind, and does not depend on places, is found again while it is there.
+        const std::unique_ptr<terrain::LodAlgorithm> before = std::move(view.algorithm);
+        view.hasMesh = false;
+        if (before && view.boxes == data.model.boxes && edits && view.meshVersion == meshVersion) view.algorithm = master->createAlgorithm(data.model, data.grid);
+    }
     if (edits && !edits->isEmpty()) {
         if (view.drawing) view.drawing->update(data.grid, *edits);
         if (view.algorithm && !view.algorithm->update(data.grid, *edits)) view.algorithm.reset();

@@ -132,7 +132,7 @@ std::unique_ptr<LodAlgorithm> algorithmOf(fuzz::Input& input, Kind kind, const S
     if (input.flag())
         errors = std::make_shared<ClipmapErrors>(grid, ClipmapLayout(grid.columns(), grid.rows(), {15, 0, 0, 0}).levels());
     return std::make_unique<ClipmapMesh>(
-        grid.columns(), grid.rows(), shape, settings, model.boxes, [errors] { return errors; }, detail);
+        grid.columns(), grid.rows(), shape, settings, model.boxes, [errors](const SampleGrid&) { return errors; }, detail);
 }
 
 /// Of any mesh, however wild the numbers.

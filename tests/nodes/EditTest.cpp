@@ -353,12 +353,13 @@ namespace {
 struct FieldChange {
     const char* what;
     std::function<void(SoHeightMap*, SoTerrainShape*)> apply;
+    bool moves = false;  ///< which takes new meshes
 };
 
 const FieldChange kFieldChanges[] = {
-    {"spacing", [](SoHeightMap* map, SoTerrainShape*) { map->spacing = SbVec2f(1.5f, 0.8f); }},
-    {"origin", [](SoHeightMap* map, SoTerrainShape*) { map->origin = SbVec2f(7.0f, -3.0f); }},
-    {"spacing and origin as before", [](SoHeightMap* map, SoTerrainShape*) { map->spacing = SbVec2f(0.0f, 0.0f), map->origin = SbVec2f(0.0f, 0.0f); }},
+    {"spacing", [](SoHeightMap* map, SoTerrainShape*) { map->spacing = SbVec2f(1.5f, 0.8f); }, true},
+    {"origin", [](SoHeightMap* map, SoTerrainShape*) { map->origin = SbVec2f(7.0f, -3.0f); }, true},
+    {"spacing and origin as before", [](SoHeightMap* map, SoTerrainShape*) { map->spacing = SbVec2f(0.0f, 0.0f), map->origin = SbVec2f(0.0f, 0.0f); }, true},
     {"the same scale", [](SoHeightMap* map, SoTerrainShape*) { map->heightScale = 0.5f; }},
     {"pixelError", [](SoHeightMap*, SoTerrainShape* node) { node->pixelError = 4.0f; }},
     {"frustumCulling", [](SoHeightMap*, SoTerrainShape* node) { node->frustumCulling = FALSE; }},
@@ -394,7 +395,9 @@ TEST_P(Edits, OfFieldsReadNoFileAndMeasureNothingThatStays)
         change.apply(scene.map, scene.node);
         // A message that the file is gone would fail here.
         const Image picture = stage.render(scene.root.get());
-        EXPECT_EQ(scene.node->getStatistics().buildMilliseconds, 0.0);
+        if (!change.moves) {
+            EXPECT_EQ(scene.node->getStatistics().buildMilliseconds, 0.0);
+        }
         EXPECT_TRUE(scene.map->isLoaded());
         write(folder.file("hills.raw"));
         EditScene other = sceneFor(scene.map->spacing.getValue(), scene.map->origin.getValue());
