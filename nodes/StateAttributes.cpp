@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <Inventor/actions/SoAction.h>
+#include <Inventor/actions/SoPickAction.h>
 #include <Inventor/elements/SoGLMultiTextureCoordinateElement.h>
 #include <Inventor/elements/SoLazyElement.h>
 #include <Inventor/elements/SoMaterialBindingElement.h>
@@ -76,8 +78,10 @@ void StateAttributes::readMaterials(SoState * state)
     case SoMaterialBindingElement::PER_FACE_INDEXED: materialBinding_ = PER_FACE; break;
     default: materialBinding_ = PER_VERTEX; break;
     }
-    if (lazy_->getNumDiffuse() <= 1) materialBinding_ = OVERALL;
-    isEnough("materials", materialBinding_, lazy_->getNumDiffuse(), "the last one serves for the rest");
+    // Material nodes do not act in a pick: there the binding alone says which index a vertex has.
+    materialCount_ = state->getAction()->isOfType(SoPickAction::getClassTypeId()) ? std::numeric_limits<int>::max() : lazy_->getNumDiffuse();
+    if (materialCount_ <= 1) materialBinding_ = OVERALL;
+    isEnough("materials", materialBinding_, materialCount_, "the last one serves for the rest");
     format_.colours = materialBinding_ != OVERALL;
     if (format_.colours) mix(LazyElementAccess::colourId(lazy_));
     mix(materialBinding_);
@@ -197,7 +201,45 @@ bool StateAttributes::hasAffineTextureCoordinates(int unit) const
 
 int StateAttributes::materialIndex(int column, int row) const
 {
-    return boundIndex(materialBinding_, column, row, lazy_->getNumDiffuse());
+    return boundIndex(materialBinding_, column, row, materialCount_);
+}
+
+int StateAttributes::materialIndex(const Corner & corner) const
+{
+    const bool ofCell = materialBinding_ == PER_FACE || materialBinding_ == PER_ROW;
+    return ofCell ? materialIndex(corner.cellColumn, corner.cellRow) : materialIndex(corner.column, corner.row);
+}
+
+int StateAttributes::normalIndex(const Corner & corner) const
+{
+    const bool ofCell = normalBinding_ == PER_FACE || normalBinding_ == PER_ROW;
+    if (normalBinding_ == GENERATED) return int(grid_.index(corner.column, corner.row));
+    return ofCell ? boundIndex(normalBinding_, corner.cellColumn, corner.cellRow, normalCount_)
+                  : boundIndex(normalBinding_, corner.column, corner.row, normalCount_);
+}
+
+SbVec3f StateAttributes::normal(const Corner & corner) const
+{
+    return normalBinding_ == GENERATED ? generatedNormal(corner.column, corner.row) : normals_[normalIndex(corner)];
+}
+
+SbVec4f StateAttributes::textureCoordinates(const Corner & corner) const
+{
+    const int index = int(grid_.index(corner.column, corner.row));
+    const auto type = textureCoordinates_->getType(0);
+    if (type == SoMultiTextureCoordinateElement::FUNCTION) {
+        const glm::vec3 point = grid_.position(corner.column, corner.row);
+        return textureCoordinates_->get(0, SbVec3f(point.x, point.y, point.z), normal(corner));
+    }
+    if (type == SoMultiTextureCoordinateElement::EXPLICIT && index < textureCoordinates_->getNum(0)) {
+        if (textureCoordinates_->getDimension(0) == 4) return textureCoordinates_->get4(0, index);
+        if (textureCoordinates_->getDimension(0) == 3) {
+            const SbVec3f & three = textureCoordinates_->get3(0, index);
+            return SbVec4f(three[0], three[1], three[2], 1.0f);
+        }
+    }
+    const SbVec2f two = textureCoordinate(0, corner.column, corner.row);
+    return SbVec4f(two[0], two[1], 0.0f, 1.0f);
 }
 
 void StateAttributes::prefetch(std::uint32_t sample) const

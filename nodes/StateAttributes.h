@@ -53,6 +53,18 @@ public:
     /// Index into the state's materials.
     int materialIndex(int column, int row) const;
 
+    /// A corner of a triangle of one cell, which at full detail has the cell's own value where that is bound per face or row.
+    struct Corner {
+        int cellColumn, cellRow;
+        int column, row;
+    };
+    int materialIndex(const Corner & corner) const;
+    /// Index into the state's normals; of generated ones, the sample's.
+    int normalIndex(const Corner & corner) const;
+    SbVec3f normal(const Corner & corner) const;
+    /// All four coordinates of the first unit, as the state has them or as its texture coordinate function makes them of a vertex.
+    SbVec4f textureCoordinates(const Corner & corner) const;
+
 private:
     enum Binding { OVERALL, PER_ROW, PER_FACE, PER_VERTEX, GENERATED };
 
@@ -77,6 +89,7 @@ private:
     const SbVec3f * normals_ = nullptr;
     int normalCount_ = 0;
     const SoLazyElement * lazy_ = nullptr;
+    int materialCount_ = 0;
     const SoMultiTextureCoordinateElement * textureCoordinates_ = nullptr;
 };
 

@@ -6,8 +6,8 @@
 #include <Inventor/details/SoSubDetail.h>
 
 /// Detail of a point on a terrain node: the cell that was hit, which of its two triangles, and the height. As an SoFaceDetail it also
-/// gives the three corners of the triangle: coordinate indices count the samples row after row, as SoQuadMesh's do; the face index
-/// is row * (columns - 1) + column.
+/// gives the three corners of the triangle: coordinate indices count the coordinates from startIndex on, or the samples of the height map,
+/// row after row, as SoQuadMesh's do; the face index is row * (columns - 1) + column. Triangle callbacks find one at each vertex.
 class SoTerrainDetail : public SoFaceDetail {
     typedef SoFaceDetail inherited;
     SO_DETAIL_HEADER(SoTerrainDetail);
