@@ -119,17 +119,21 @@
 #include <string>
 
 #include <Inventor/SoInput.h>
+#include <Inventor/SoOutput.h>
 #include <Inventor/actions/SoCallbackAction.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetBoundingBoxAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
 #include <Inventor/actions/SoPickAction.h>
+#include <Inventor/actions/SoWriteAction.h>
 #include <Inventor/errors/SoDebugError.h>
+#include <Inventor/fields/SoFieldData.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoTerrain.h>
 
+#include "FieldsInUse.h"
 #include "FindFile.h"
 #include "height/MapSource.h"
 
@@ -224,6 +228,20 @@ SoHeightMap::SoHeightMap() : pimpl(new Private)
 }
 
 SoHeightMap::~SoHeightMap() {}
+
+void SoHeightMap::write(SoWriteAction * action)
+{
+    SoOutput * out = action->getOutput();
+    if (!out->isBinary() || out->getStage() != SoOutput::WRITE) {
+        inherited::write(action);
+        return;
+    }
+    if (this->writeHeader(out, FALSE, FALSE)) return;
+    SoFieldData fields;
+    addFieldsInUse(fields, this);
+    fields.write(out, this);
+    this->writeFooter(out);
+}
 
 SbBool SoHeightMap::readInstance(SoInput * in, unsigned short flags)
 {

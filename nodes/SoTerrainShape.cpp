@@ -69,6 +69,7 @@
 #include <Inventor/SoOutput.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
+#include <Inventor/actions/SoWriteAction.h>
 #include <Inventor/bundles/SoMaterialBundle.h>
 #include <Inventor/elements/SoCacheElement.h>
 #include <Inventor/elements/SoClipPlaneElement.h>
@@ -81,6 +82,7 @@
 #include <Inventor/elements/SoShapeHintsElement.h>
 #include <Inventor/elements/SoShapeStyleElement.h>
 #include <Inventor/errors/SoDebugError.h>
+#include <Inventor/fields/SoFieldData.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoHeightMap.h>
@@ -90,6 +92,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "FieldsInUse.h"
 #include "StateAttributes.h"
 #include "StateView.h"
 #include "TerrainFrame.h"
@@ -194,11 +197,18 @@ void SoTerrainShape::notify(SoNotList * list)
     inherited::notify(list);
 }
 
-void SoTerrainShape::addWriteReference(SoOutput * out, SbBool isFromField)
+void SoTerrainShape::write(SoWriteAction * action)
 {
-    // Of a class that is not its own Coin writes all fields into binary files, and can't read a field that holds no node back.
-    this->isBuiltIn = out->isBinary();
-    inherited::addWriteReference(out, isFromField);
+    SoOutput * out = action->getOutput();
+    if (!out->isBinary() || out->getStage() != SoOutput::WRITE) {
+        inherited::write(action);
+        return;
+    }
+    if (this->writeHeader(out, FALSE, FALSE)) return;
+    SoFieldData fields;
+    addFieldsInUse(fields, this);
+    fields.write(out, this);
+    this->writeFooter(out);
 }
 
 std::optional<TerrainGrid> SoTerrainShape::Private::findGrid(SoState * state, bool withErrors)

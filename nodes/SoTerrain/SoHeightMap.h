@@ -57,6 +57,7 @@ public:
     virtual void pick(SoPickAction * action);
     virtual void getBoundingBox(SoGetBoundingBoxAction * action);
     virtual void getPrimitiveCount(SoGetPrimitiveCountAction * action);
+    virtual void write(SoWriteAction * action);
 
 protected:
     virtual ~SoHeightMap();

@@ -54,7 +54,7 @@ public:
     virtual void rayPick(SoRayPickAction * action);
     virtual void getPrimitiveCount(SoGetPrimitiveCountAction * action);
     virtual void notify(SoNotList * list);
-    virtual void addWriteReference(SoOutput * out, SbBool isFromField = FALSE);
+    virtual void write(SoWriteAction * action);
 
 protected:
     SoTerrainShape();
