@@ -225,21 +225,7 @@ SbVec3f StateAttributes::normal(const Corner & corner) const
 
 SbVec4f StateAttributes::textureCoordinates(const Corner & corner) const
 {
-    const int index = int(grid_.index(corner.column, corner.row));
-    const auto type = textureCoordinates_->getType(0);
-    if (type == SoMultiTextureCoordinateElement::FUNCTION) {
-        const glm::vec3 point = grid_.position(corner.column, corner.row);
-        return textureCoordinates_->get(0, SbVec3f(point.x, point.y, point.z), normal(corner));
-    }
-    if (type == SoMultiTextureCoordinateElement::EXPLICIT && index < textureCoordinates_->getNum(0)) {
-        if (textureCoordinates_->getDimension(0) == 4) return textureCoordinates_->get4(0, index);
-        if (textureCoordinates_->getDimension(0) == 3) {
-            const SbVec3f & three = textureCoordinates_->get3(0, index);
-            return SbVec4f(three[0], three[1], three[2], 1.0f);
-        }
-    }
-    const SbVec2f two = textureCoordinate(0, corner.column, corner.row);
-    return SbVec4f(two[0], two[1], 0.0f, 1.0f);
+    return wideTextureCoordinate(0, corner.column, corner.row);
 }
 
 void StateAttributes::prefetch(std::uint32_t sample) const

@@ -10,4 +10,5 @@ fi
 python=/usr/bin/python3
 [ -x $python ] || python=$(command -v python3) || { echo "skipped: no python3"; exit 77; }
 draws pivy "$python" "$clients/render.py"
+LD_LIBRARY_PATH=$modules "$python" "$clients/fields.py" || failed=1
 exit $failed
