@@ -230,8 +230,12 @@ void World::openWindow() {
     ledger_.disregard(window->handle);
     if (partner) ledger_.share(window->handle, partner->handle);
     window->action = std::make_unique<SoGLRenderAction>(SbViewportRegion(320, 240));
-    window->action->setCacheContext(partner ? partner->action->getCacheContext()
-                                            : SoGLCacheContextElement::getUniqueCacheContext());
+    std::uint32_t id = partner ? partner->action->getCacheContext() : 0;
+    if (!partner && !freeIds_.empty()) {
+        id = freeIds_.back();
+        freeIds_.pop_back();
+    }
+    window->action->setCacheContext(id ? id : SoGLCacheContextElement::getUniqueCacheContext());
     window->root->addChild(window->camera);
     window->root->addChild(scene_.get());
     windows_.push_back(std::move(window));
@@ -249,6 +253,7 @@ void World::closeWindow() {
     if (!isShared && random(10) > 0) {
         window->context->makeCurrent();
         SoContextHandler::destructingContext(id);
+        freeIds_.push_back(id);
         const auto left = ledger_.in(window->handle);
         if (test::GlLedger::sum(left) > 0) complain("a context goes with " + test::GlLedger::text(left));
     }

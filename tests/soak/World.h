@@ -74,6 +74,7 @@ private:
     int side_ = 0;
     app::NodePtr<SoSeparator> scene_;  ///< data, texture, terrain
     std::vector<std::unique_ptr<Window>> windows_;
+    std::vector<std::uint32_t> freeIds_;  ///< of contexts that went: Coin keeps 6 KB for each id that it ever saw
     std::vector<std::size_t> deeds_;
     std::size_t frames_ = 0;
     int problems_ = 0;
