@@ -13,7 +13,7 @@
 #include <Inventor/elements/SoGLCacheContextElement.h>
 #include <Inventor/elements/SoModelMatrixElement.h>
 #include <Inventor/elements/SoProjectionMatrixElement.h>
-#include <Inventor/elements/SoViewingMatrixElement.h>
+#include <Inventor/elements/SoGLViewingMatrixElement.h>
 #include <Inventor/elements/SoViewportRegionElement.h>
 #include <Inventor/fields/SoSFBool.h>
 #include <Inventor/nodes/SoCallback.h>
@@ -184,7 +184,7 @@ void ErrorMeter::replaceMatrices(void* self, SoAction* action) {
     SoCacheElement::invalidate(state);
     if (!meter.window_) return;
     SbDPMatrix m = toDouble(SoModelMatrixElement::get(state));
-    m.multRight(toDouble(SoViewingMatrixElement::get(state)));
+    m.multRight(toDouble(SoGLViewingMatrixElement::getResetMatrix(state)));
     meter.localToClip_ = m.multRight(toDouble(SoProjectionMatrixElement::get(state)));
     meter.viewport_ = SoViewportRegionElement::get(state).getViewportSizePixels();
 

@@ -3,9 +3,9 @@
 #define SOTERRAIN_STATEVIEW_H
 
 #include <Inventor/SbMatrix.h>
+#include <Inventor/elements/SoGLViewingMatrixElement.h>
 #include <Inventor/elements/SoModelMatrixElement.h>
 #include <Inventor/elements/SoProjectionMatrixElement.h>
-#include <Inventor/elements/SoViewingMatrixElement.h>
 #include <Inventor/elements/SoViewportRegionElement.h>
 
 #include "base/View.h"
@@ -19,11 +19,12 @@ inline glm::dmat4 toGlm(const SbMatrix & matrix)
     return result;
 }
 
-/// From the local coordinates of the node that is traversed to its viewport.
+/// From the local coordinates of the node that is traversed to its viewport, while rendering. SoViewingMatrixElement leads from the
+/// world to the eye only where no transform stands before the camera; what SoResetTransform goes back to does everywhere.
 inline terrain::View viewOf(SoState * state)
 {
     terrain::View view;
-    view.clipFromLocal = toGlm(SoProjectionMatrixElement::get(state)) * toGlm(SoViewingMatrixElement::get(state)) *
+    view.clipFromLocal = toGlm(SoProjectionMatrixElement::get(state)) * toGlm(SoGLViewingMatrixElement::getResetMatrix(state)) *
                          toGlm(SoModelMatrixElement::get(state));
     const SbVec2s size = SoViewportRegionElement::get(state).getViewportSizePixels();
     view.viewportPixels = {size[0], size[1]};

@@ -7,6 +7,7 @@
 
 #include <Inventor/SoDB.h>
 #include <Inventor/nodes/SoTransform.h>
+#include <Inventor/nodes/SoTransformSeparator.h>
 #include <Inventor/sensors/SoNodeSensor.h>
 #include <Inventor/sensors/SoSensorManager.h>
 
@@ -236,4 +237,36 @@ TEST(Convergence, AfterAJumpIsToldAndAskedForUntilItIsThere) {
     const Image there = stage.picture();
     const auto reference = texturedTerrain(Kind::Reference, ground());
     expectAlike(stage.render(viewOf(circling(3.0f), reference.get()).get()), there, 2.0);
+}
+
+TEST(Views, OfCamerasBehindATransformShowTheSame) {
+    // Where the transform goes with the camera, and where the ground goes too.
+    const auto scene = [](Kind kind, bool groundToo) {
+        const Surface surface = ground();
+        Ref<SoSeparator> root(new SoSeparator);
+        SoGroup* before = root.get();
+        if (!groundToo) root->addChild(before = new SoTransformSeparator);
+        before->addChild(placed(900.0f, -300.0f, 40.0f, 0.7f));
+        SoCamera* camera = circling(1.0f);
+        if (!groundToo) {
+            // As far away from where the transform takes it as without one.
+            const SbRotation back(SbVec3f(0.0f, 0.0f, 1.0f), -0.7f);
+            SbVec3f place;
+            back.multVec(camera->position.getValue() - SbVec3f(900.0f, -300.0f, 40.0f), place);
+            camera->position = place;
+            camera->orientation = camera->orientation.getValue() * back;
+        }
+        before->addChild(camera);
+        root->addChild(texturedTerrain(kind, surface, 0.5f).get());
+        return root;
+    };
+    Stage stage;
+    for (const bool groundToo : {false, true}) {
+        const Image reference = stage.render(viewOf(circling(1.0f), texturedTerrain(Kind::Reference, ground()).get()).get());
+        for (const Kind kind : kOurKinds) {
+            const Image found = stage.render(scene(kind, groundToo).get());
+            savePicture("camera_transformed_" + identifierOf(kind) + (groundToo ? "_ground" : ""), {reference, found});
+            expectAlike(reference, found, 3.0, nameOf(kind));
+        }
+    }
 }
