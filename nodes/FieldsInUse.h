@@ -1,3 +1,4 @@
+// What a file says of a node.
 #ifndef SOTERRAIN_FIELDSINUSE_H
 #define SOTERRAIN_FIELDSINUSE_H
 

@@ -239,7 +239,7 @@ TEST(Convergence, AfterAJumpIsToldAndAskedForUntilItIsThere) {
     expectAlike(stage.render(viewOf(circling(3.0f), reference.get()).get()), there, 2.0);
 }
 
-TEST(Views, OfCamerasBehindATransformShowTheSame) {
+TEST(Cameras, BehindATransformShowTheSame) {
     // Where the transform goes with the camera, and where the ground goes too.
     const auto scene = [](Kind kind, bool groundToo) {
         const Surface surface = ground();
