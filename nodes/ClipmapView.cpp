@@ -12,6 +12,8 @@
 
 #include <SoTerrain/SoTerrainStatistics.h>
 
+#include "ProgramPools.h"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
@@ -169,7 +171,7 @@ glm::dmat3 eyeFromNormal(const glm::dmat4 & modelView, const glm::dmat4 & localF
 ClipmapView::ClipmapView(const TerrainFrame & frame, const terrain::ClipmapShape & shape, bool memoryFree,
                          std::shared_ptr<const terrain::SynthesisedDetail> detail)
     : shape_(shape), memoryFree_(memoryFree), detail_(std::move(detail)), clipmap_(terrain::ClipmapLayout(frame.data.grid.columns(), frame.data.grid.rows(), shape)),
-      renderer_(clipmap_.layout(), memoryFree)
+      renderer_(clipmap_.layout(), memoryFree, programPoolOf(frame.action->getState()))
 {
 }
 

@@ -11,6 +11,7 @@
 #include <SoTerrain/SoTerrainTextureElement.h>
 
 #include "ElementAccess.h"
+#include "ProgramPools.h"
 #include "StateAttributes.h"
 #include "TextureFocus.h"
 
@@ -41,6 +42,11 @@ int fogNow()
     return mode == GL_LINEAR ? 1 : mode == GL_EXP ? 2 : 3;
 }
 
+terrain::Result<terrain::GlProgram> buildProgram()
+{
+    return terrain::GlProgram::build("SoTerrainTexture", std::string(), std::string(kBegin) + terrain::TextureClipmap::glsl() + kMain, {});
+}
+
 bool hasFurtherTextures(SoState * state)
 {
     int last = -1;
@@ -60,34 +66,11 @@ bool hasTerrainTexture(SoState * state)
            TextureImageElementAccess::unitId(state, 0) == element->getNodeId();
 }
 
-std::string TerrainTextureUse::makeProgram()
-{
-    const GLuint shader = glCreateShader(GL_FRAGMENT_SHADER);
-    const char * parts[] = {kBegin, terrain::TextureClipmap::glsl(), kMain};
-    glShaderSource(shader, 3, parts, nullptr);
-    glCompileShader(shader);
-    program_ = glCreateProgram();
-    glAttachShader(program_, shader);
-    glLinkProgram(program_);
-    GLint compiled = GL_FALSE, linked = GL_FALSE;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-    glGetProgramiv(program_, GL_LINK_STATUS, &linked);
-    char log[512] = "";
-    if (!compiled)
-        glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-    else
-        glGetProgramInfoLog(program_, sizeof log, nullptr, log);
-    glDeleteShader(shader);
-    if (linked) return {};
-    return std::string("SoTerrainTexture: expected GLSL 1.30, found: ") + log;
-}
-
 std::vector<terrain::GlName> TerrainTextureUse::release()
 {
     std::vector<terrain::GlName> names;
     if (clipmap_)
         for (const GLuint name : clipmap_->release()) names.push_back({terrain::GlName::Texture, name});
-    if (program_ != 0) names.push_back({terrain::GlName::Program, std::exchange(program_, 0u)});
     isNew_ = true;
     problem_.clear();
     return names;
@@ -125,15 +108,20 @@ TerrainTextureUse::Frame TerrainTextureUse::update(SoGLRenderAction * action, co
             frame.converged = progress.value().complete;
             frame.uploadedBytes = progress.value().texels * 4;
         }
-        if (isNew_ && problem_.empty()) problem_ = makeProgram();
         isNew_ = false;
+    }
+    if (problem_.empty()) {
+        const auto program = programPoolOf(state)->find("terrain texture", buildProgram);
+        if (program)
+            frame.program = program.value()->name();
+        else
+            problem_ = program.error().message();
     }
     frame.problem = problem_;
     if (!problem_.empty()) return frame;
     if (hasFurtherTextures(state))
         frame.problem = "SoTerrainTexture: expected no texture on further units, found one; it is not drawn";
     frame.clipmap = clipmap_.get();
-    frame.program = program_;
     return frame;
 }
 

@@ -60,19 +60,16 @@ public:
     const terrain::TiledImage * image() const { return image_.get(); }
     std::size_t textureBytes() const { return clipmap_ ? clipmap_->textureBytes() : 0; }
     /// Whether the current context has them.
-    bool isThere() const { return program_ == 0 || glIsProgram(program_); }
-    /// All GL objects, which are the caller's to delete.
+    bool isThere() const { return !clipmap_ || clipmap_->isThere(); }
+    /// All GL objects but programs, which are the caller's to delete.
     std::vector<terrain::GlName> release();
 
 private:
-    std::string makeProgram();
-
     std::unique_ptr<terrain::TextureClipmap> clipmap_;
     std::shared_ptr<const terrain::TiledImage> image_;
     int wantedClipSize_ = 0;
     bool isNew_ = true;    ///< nothing has been loaded yet
     std::string problem_;  ///< why it can't be drawn, or empty
-    GLuint program_ = 0;
 };
 
 #endif

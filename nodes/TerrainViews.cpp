@@ -34,11 +34,8 @@ void deleteLater(void * closure, uint32_t)
 
 SoScheduleDeleteCB * deleterOf(terrain::GlName::Kind kind)
 {
-    switch (kind) {
-    case terrain::GlName::Buffer: return deleteLater<terrain::GlName::Buffer>;
-    case terrain::GlName::Texture: return deleteLater<terrain::GlName::Texture>;
-    default: return deleteLater<terrain::GlName::Program>;
-    }
+    // Programs stay in their pools.
+    return kind == terrain::GlName::Buffer ? deleteLater<terrain::GlName::Buffer> : deleteLater<terrain::GlName::Texture>;
 }
 
 std::vector<terrain::GlName> namesOf(TerrainView & view)

@@ -52,8 +52,8 @@ public:
 
 }  // namespace
 
-ClipmapRenderer::ClipmapRenderer(const ClipmapLayout& layout, bool memoryFree)
-    : layout_(layout), memoryFree_(memoryFree), textures_(layout, memoryFree) {}
+ClipmapRenderer::ClipmapRenderer(const ClipmapLayout& layout, bool memoryFree, std::shared_ptr<ProgramPool> programs)
+    : layout_(layout), memoryFree_(memoryFree), programs_(std::move(programs)), textures_(layout, memoryFree, programs_) {}
 
 std::optional<Error> ClipmapRenderer::whatIsMissing(const ClipmapLayout& layout) {
     const int version = epoxy_gl_version();
@@ -204,12 +204,9 @@ void ClipmapRenderer::drawLevels(int level, Drawn& drawn) {
 Result<ClipmapRenderer::Drawn> ClipmapRenderer::draw(const Clipmap::Frame& frame, const ClipmapTextures::Source& source,
                                                      const ClipmapDrawing& drawing) {
     const ProfileScope scope("clipmap: draw");
-    if (programs_.find(drawing.shading) == programs_.end()) {
-        auto built = buildClipmapProgram(drawing.shading);
-        if (!built) return built.error();
-        programs_.emplace(drawing.shading, std::move(built).value());
-    }
-    GlProgram& program = programs_[drawing.shading];
+    const auto found = programs_->find(nameOf(drawing.shading), [&] { return buildClipmapProgram(drawing.shading); });
+    if (!found) return found.error();
+    GlProgram& program = *found.value();
     Drawn result;
     const auto update = [&](std::span<const ClipmapUpdates::Update> updates) -> std::optional<Error> {
         const auto sent = textures_.update(updates, source);
@@ -270,9 +267,6 @@ std::vector<GlName> ClipmapRenderer::release() {
     take(vertices_);
     take(indices_);
     for (GlBuffer& buffer : patches_.all()) take(buffer);
-    for (auto& [shading, program] : programs_)
-        if (const GLuint name = program.release()) names.push_back({GlName::Program, name});
-    programs_.clear();
     return names;
 }
 

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,6 +14,7 @@
 #include "gl/ClipmapShader.h"
 #include "gl/ClipmapTextures.h"
 #include "gl/GlObjects.h"
+#include "gl/ProgramPool.h"
 #include "gl/TextureClipmap.h"
 #include "lod/Clipmap.h"
 
@@ -41,7 +42,8 @@ struct ClipmapDrawing {
 /// compatibility context: lights, material, texture, fog and clip planes are GL's own.
 class ClipmapRenderer {
 public:
-    ClipmapRenderer(const ClipmapLayout& layout, bool memoryFree);
+    /// `programs`: those of the context.
+    ClipmapRenderer(const ClipmapLayout& layout, bool memoryFree, std::shared_ptr<ProgramPool> programs);
 
     /// What is missing of GL in the current context for any of these; nothing where all is there.
     static std::optional<Error> whatIsMissing(const ClipmapLayout& layout);
@@ -57,6 +59,7 @@ public:
     std::size_t bufferBytes() const { return textures_.bytes() + vertices_.bytes() + indices_.bytes() + patches_.bytes(); }
     /// Whether the current context has all this, as TerrainRenderer::isThere().
     bool isThere() const { return vertices_.isThere() && (textures_.heights() == 0 || glIsTexture(textures_.heights())); }
+    /// All but programs, which stay in their pool.
     std::vector<GlName> release();
 
 private:
@@ -73,13 +76,13 @@ private:
 
     ClipmapLayout layout_;
     bool memoryFree_;
+    std::shared_ptr<ProgramPool> programs_;
     ClipmapTextures textures_;
     GlBuffer vertices_, indices_;
     GlStream patches_;
     std::array<Mesh, kFootprints> meshes_{};
     /// First instance of each footprint and level: those of level l are [l], up to [l + 1].
     std::array<std::vector<GLsizei>, kFootprints> firstPatch_;
-    std::map<ClipmapShading, GlProgram> programs_;
 };
 
 }  // namespace terrain

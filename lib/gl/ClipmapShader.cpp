@@ -252,4 +252,12 @@ Result<GlProgram> buildClipmapProgram(const ClipmapShading& shading) {
                             {{"corner", kCornerAttribute}, {"patchRect", kPatchAttribute}, {"patchLevel", kLevelAttribute}});
 }
 
+std::string nameOf(const ClipmapShading& shading) {
+    std::string name = "clipmap";
+    for (const int part : {shading.lights, int(shading.isMatt), int(shading.twoSided), int(shading.clipPlanes), int(shading.fog),
+                           int(shading.texture), int(shading.holes), int(shading.showLevels)})
+        name += ' ' + std::to_string(part);
+    return name;
+}
+
 }  // namespace terrain

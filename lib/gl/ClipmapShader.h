@@ -35,5 +35,7 @@ inline constexpr int kClipmapShaderLevels = 32;
 enum ClipmapAttribute : unsigned { kCornerAttribute = 0, kPatchAttribute = 1, kLevelAttribute = 7 };
 
 Result<GlProgram> buildClipmapProgram(const ClipmapShading& shading);
+/// Another one for each program.
+std::string nameOf(const ClipmapShading& shading);
 
 }  // namespace terrain

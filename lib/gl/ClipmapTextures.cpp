@@ -198,16 +198,24 @@ std::optional<Error> ClipmapTextures::create() {
     constexpr float kTriangle[6] = {-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
     triangle_.fill(GL_ARRAY_BUFFER, kTriangle, sizeof kTriangle, GL_STATIC_DRAW);
     glBindBuffer(GL_ARRAY_BUFFER, GLuint(buffer));
+    return std::nullopt;
+}
 
-    const std::string head = std::string("#version 130\n") + kAddress;
-    auto normals = GlProgram::build("normals of a geometry clipmap", kVertexShader, head + kNormalShader, {{"corner", 0}});
+std::optional<Error> ClipmapTextures::findPrograms() {
+    const auto normals = programs_->find("clipmap normals", [] {
+        const std::string head = std::string("#version 130\n") + kAddress;
+        return GlProgram::build("normals of a geometry clipmap", kVertexShader, head + kNormalShader, {{"corner", 0}});
+    });
     if (!normals) return normals.error();
-    normalProgram_ = std::move(normals).value();
-    if (!heightTarget_) return std::nullopt;
-    auto detail = GlProgram::build("detail of a geometry clipmap", kVertexShader, head + detailShaderSource() + kDetailShader,
-                                   {{"corner", 0}});
+    normalProgram_ = normals.value();
+    if (layout_.detailLevels() == 0) return std::nullopt;
+    const auto detail = programs_->find("clipmap detail", [] {
+        const std::string head = std::string("#version 130\n") + kAddress;
+        return GlProgram::build("detail of a geometry clipmap", kVertexShader, head + detailShaderSource() + kDetailShader,
+                                {{"corner", 0}});
+    });
     if (!detail) return detail.error();
-    detailProgram_ = std::move(detail).value();
+    detailProgram_ = detail.value();
     return std::nullopt;
 }
 
@@ -262,33 +270,35 @@ void ClipmapTextures::send(const ClipmapUpdates::Update& update, const SampleGri
 
 void ClipmapTextures::synthesise(const ClipmapUpdates::Update& update, const Source& source) {
     const int level = update.level, d = layout_.detailLevels() - level;
-    detailProgram_.use();
-    setDetailUniforms(detailProgram_.name(), *source.detail, kNoiseUnit);
+    GlProgram& program = *detailProgram_;
+    program.use();
+    setDetailUniforms(program.name(), *source.detail, kNoiseUnit);
     const ClipRect coarser = layout_.domain(level + 1);
-    glUniform1i(detailProgram_["heights"], kHeightUnit);
-    glUniform1i(detailProgram_["mask"], layout_.size());
-    glUniform1i(detailProgram_["coarserLayer"], layerOf(level + 1));
-    glUniform2i(detailProgram_["low"], update.rect.low.x, update.rect.low.y);
-    glUniform2i(detailProgram_["lastCoarser"], coarser.high.x, coarser.high.y);
-    glUniform1i(detailProgram_["detailLevel"], d);
+    glUniform1i(program["heights"], kHeightUnit);
+    glUniform1i(program["mask"], layout_.size());
+    glUniform1i(program["coarserLayer"], layerOf(level + 1));
+    glUniform2i(program["low"], update.rect.low.x, update.rect.low.y);
+    glUniform2i(program["lastCoarser"], coarser.high.x, coarser.high.y);
+    glUniform1i(program["detailLevel"], d);
     draw(heightTarget_, layout_.pitch(), update.rect, heights_, layerOf(level));
 }
 
 /// Normals of the vertices and of what lies behind each half-way to the next one.
 void ClipmapTextures::makeNormals(int level, const ClipRect& vertices, const Source& source) {
     const ClipRect& valid = source.valid[std::size_t(level)];
-    normalProgram_.use();
-    glUniform1i(normalProgram_["heights"], kHeightUnit);
-    glUniform1i(normalProgram_["normals"], kNormalUnit);
-    glUniform1i(normalProgram_["mask"], layout_.size());
-    glUniform1i(normalProgram_["normalMask"], 2 * layout_.pitch() - 1);
-    glUniform1i(normalProgram_["layer"], layerOf(level));
-    glUniform1i(normalProgram_["coarserLayer"], layerOf(level + 1));
-    glUniform2i(normalProgram_["low"], vertices.low.x, vertices.low.y);
-    glUniform4i(normalProgram_["valid"], valid.low.x, valid.low.y, valid.high.x, valid.high.y);
+    GlProgram& program = *normalProgram_;
+    program.use();
+    glUniform1i(program["heights"], kHeightUnit);
+    glUniform1i(program["normals"], kNormalUnit);
+    glUniform1i(program["mask"], layout_.size());
+    glUniform1i(program["normalMask"], 2 * layout_.pitch() - 1);
+    glUniform1i(program["layer"], layerOf(level));
+    glUniform1i(program["coarserLayer"], layerOf(level + 1));
+    glUniform2i(program["low"], vertices.low.x, vertices.low.y);
+    glUniform4i(program["valid"], valid.low.x, valid.low.y, valid.high.x, valid.high.y);
     const float cells = float(1.0 / layout_.spacing(level));
-    glUniform2f(normalProgram_["slopeScale"], source.slopeScale.x * cells, source.slopeScale.y * cells);
-    glUniform1i(normalProgram_["coarsest"], level + 1 == layout_.levels());
+    glUniform2f(program["slopeScale"], source.slopeScale.x * cells, source.slopeScale.y * cells);
+    glUniform1i(program["coarsest"], level + 1 == layout_.levels());
     draw(normalTarget_, 2 * layout_.pitch(), {vertices.low * 2, vertices.high * 2 + 1}, normals_, layerOf(level));
 }
 
@@ -308,6 +318,7 @@ void ClipmapTextures::makeNoise(const SynthesisedDetail& detail) {
 Result<std::size_t> ClipmapTextures::update(std::span<const ClipmapUpdates::Update> updates, const Source& source) {
     if (updates.empty()) return std::size_t(0);
     const ProfileScope scope("clipmap: update");
+    if (auto problem = findPrograms()) return *problem;
     if (auto problem = create()) return *problem;
     if (source.detail && layout_.detailLevels() > 0) makeNoise(*source.detail);
     const PassScope pass(triangle_);
@@ -339,8 +350,6 @@ std::vector<GlName> ClipmapTextures::release() {
     };
     for (GLuint* texture : {&heights_, &normals_, &heightTarget_, &normalTarget_, &noise_}) take(GlName::Texture, *texture);
     if (GLuint buffer = triangle_.release()) take(GlName::Buffer, buffer);
-    for (GlProgram* program : {&detailProgram_, &normalProgram_})
-        if (GLuint name = program->release()) take(GlName::Program, name);
     bytes_ = 0;
     return names;
 }

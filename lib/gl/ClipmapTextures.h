@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <epoxy/gl.h>
@@ -13,6 +14,7 @@
 #include "base/Result.h"
 #include "gl/GlObjects.h"
 #include "gl/GlProgram.h"
+#include "gl/ProgramPool.h"
 #include "height/SampleGrid.h"
 #include "lod/ClipmapLayout.h"
 #include "lod/ClipmapUpdates.h"
@@ -34,7 +36,8 @@ class ClipmapTextures {
 public:
     static constexpr GLsizei kBytesPerSample = 8;
 
-    ClipmapTextures(const ClipmapLayout& layout, bool memoryFree) : layout_(layout), memoryFree_(memoryFree) {}
+    ClipmapTextures(const ClipmapLayout& layout, bool memoryFree, std::shared_ptr<ProgramPool> programs)
+        : layout_(layout), memoryFree_(memoryFree), programs_(std::move(programs)) {}
 
     /// What an update is made from.
     struct Source {
@@ -53,13 +56,14 @@ public:
     GLuint heights() const { return heights_; }
     GLuint normals() const { return normals_; }
     std::size_t bytes() const { return bytes_; }
-    /// What to delete; forgets it.
+    /// What to delete; forgets it. Programs stay in their pool.
     std::vector<GlName> release();
 
 private:
     class PassScope;
 
     std::optional<Error> create();
+    std::optional<Error> findPrograms();
     void makeNoise(const SynthesisedDetail& detail);
     void send(const ClipmapUpdates::Update& update, const SampleGrid& grid);
     void synthesise(const ClipmapUpdates::Update& update, const Source& source);
@@ -71,7 +75,8 @@ private:
     GLuint heights_ = 0, normals_ = 0;
     GLuint heightTarget_ = 0, normalTarget_ = 0, noise_ = 0;
     GlBuffer triangle_;
-    GlProgram detailProgram_, normalProgram_;
+    std::shared_ptr<ProgramPool> programs_;
+    GlProgram *detailProgram_ = nullptr, *normalProgram_ = nullptr;  ///< during an update
     float noiseAmplitude_ = 0.0f;
     std::size_t bytes_ = 0;
     std::vector<float> pairs_;

@@ -1,5 +1,7 @@
 #include "gl/GlProgram.h"
 
+#include <optional>
+
 namespace terrain {
 
 namespace {
@@ -46,20 +48,24 @@ void deleteNames(std::span<const GlName> names) {
 
 Result<GlProgram> GlProgram::build(const std::string& what, const std::string& vertexShader, const std::string& fragmentShader,
                                    const std::vector<std::pair<const char*, GLuint>>& attributes) {
-    const auto vertex = compile(what, GL_VERTEX_SHADER, vertexShader);
-    if (!vertex) return vertex.error();
-    const auto fragment = compile(what, GL_FRAGMENT_SHADER, fragmentShader);
-    if (!fragment) {
-        glDeleteShader(vertex.value());
-        return fragment.error();
-    }
+    std::vector<GLuint> shaders;
+    const auto add = [&](GLenum stage, const std::string& source) -> std::optional<Error> {
+        auto shader = compile(what, stage, source);
+        if (!shader) return shader.error();
+        shaders.push_back(shader.value());
+        return std::nullopt;
+    };
+    std::optional<Error> problem;
+    if (!vertexShader.empty()) problem = add(GL_VERTEX_SHADER, vertexShader);
+    if (!problem) problem = add(GL_FRAGMENT_SHADER, fragmentShader);
     GlProgram program;
-    program.name_ = glCreateProgram();
-    for (const GLuint shader : {vertex.value(), fragment.value()}) {
-        glAttachShader(program.name_, shader);
+    if (!problem) program.name_ = glCreateProgram();
+    for (const GLuint shader : shaders) {
+        if (!problem) glAttachShader(program.name_, shader);
         // It goes with the program.
         glDeleteShader(shader);
     }
+    if (problem) return *problem;
     for (const auto& [name, place] : attributes) glBindAttribLocation(program.name_, place, name);
     glLinkProgram(program.name_);
     GLint done = 0, length = 0;
@@ -73,9 +79,9 @@ Result<GlProgram> GlProgram::build(const std::string& what, const std::string& v
 }
 
 GLint GlProgram::operator[](const char* uniform) {
-    const auto known = places_.find(uniform);
-    if (known != places_.end()) return known->second;
-    return places_[uniform] = glGetUniformLocation(name_, uniform);
+    for (const auto& [known, place] : places_)
+        if (known == uniform) return place;
+    return places_.emplace_back(uniform, glGetUniformLocation(name_, uniform)).second;
 }
 
 }  // namespace terrain

@@ -97,6 +97,8 @@ public:
     /// What is there of a level.
     const Window& resident(int level) const { return windows_[std::size_t(level)]; }
     std::size_t textureBytes() const { return textureBytes_; }
+    /// Whether the current context has the textures.
+    bool isThere() const { return small_ == 0 || glIsTexture(small_); }
     /// Names of all textures, which are the caller's to delete; forgets them and what was resident.
     std::vector<GLuint> release();
 

@@ -58,7 +58,7 @@ public:
     Stage(const HeightMap& map, const ClipmapShape& shape, int width, int height, bool memoryFree = false,
           const SynthesisedDetail* detail = nullptr)
         : grid(map), boxes(grid), errors(grid, 20), detail_(detail), clipmap(ClipmapLayout(map.columns, map.rows, shape)),
-          renderer(clipmap.layout(), memoryFree) {
+          renderer(clipmap.layout(), memoryFree, programs) {
         auto created = HeadlessContext::create(width, height);
         EXPECT_TRUE(created) << created.error().message();
         context = std::move(created).value();
@@ -68,6 +68,7 @@ public:
     }
     ~Stage() {
         deleteNames(renderer.release());
+        deleteNames(programs->release());
         EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
     }
 
@@ -124,6 +125,7 @@ public:
     ClipmapErrors errors;
     const SynthesisedDetail* detail_;
     Clipmap clipmap;
+    std::shared_ptr<ProgramPool> programs = std::make_shared<ProgramPool>();
     ClipmapRenderer renderer;
     ClipmapSettings settings;
     const Clipmap::Frame* frame = nullptr;

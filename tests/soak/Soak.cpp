@@ -25,7 +25,7 @@ struct Options {
     double minutes = 1.0 / 3.0;
     std::uint32_t seed = 1;
     int legFrames = 30;
-    bool shares = false;
+    bool shares = true;
     std::string csv, plot;
 };
 
@@ -34,9 +34,7 @@ constexpr const char* kUsage =
     "  --minutes M   how long, default 1/3\n"
     "  --seed N      which deeds; the same number does the same, default 1\n"
     "  --leg FRAMES  after so many frames all is deleted and memory is read, default 30\n"
-    "  --share 1     some windows share their GL objects, default 0: the software drivers of Mesa 22.3 crash where one of two "
-    "such\n"
-    "                contexts deletes a program that the other one has drawn with\n"
+    "  --share 0     no windows share their GL objects, default 1: some do, as those of SoQt\n"
     "  --csv FILE    readings, some each second\n"
     "  --plot FILE   drawn by gnuplot, where it is installed; takes --csv\n"
     "Exit status: 0 flat, 1 something grew or went wrong, 2 usage, 77 no EGL.\n";
