@@ -36,8 +36,9 @@
   \endcode
 
   Edits are in memory only: SoWriteAction writes the fields, hence the file's name and not what was edited, and of a map of the program's
-  making nothing; use getHeights() to keep them. A change of spacing or origin moves the ground as it is, edits included. A change of
-  filename, channel, rawSize, rawType, noData, heightScale or heightOffset, and touch(), read the file anew, and edits are lost; without a
+  making nothing; use getHeights() to keep them. A change of spacing or origin moves the ground as it is, edits included, and one of heightScale or
+  heightOffset scales it as it is. A change of filename, channel, rawSize, rawType or noData, and touch(), read the file anew, and edits are
+  lost; so does another heightScale after 0, and where heights without edits have been scaled so often, or lie so far from 0, that they are rounded. Without a
   filename all of these do nothing. A filename replaces a map of the program's making.
 
   A copy of the node has the same map, and shares its memory until one of the two is edited or moved.
@@ -135,6 +136,7 @@
 
 #include "FieldsInUse.h"
 #include "FindFile.h"
+#include "height/HeightScale.h"
 #include "height/MapSource.h"
 
 namespace {
@@ -169,11 +171,11 @@ public:
         int channel = -1;
         SbVec2i32 rawSize;
         int rawType = 0;
-        float heightScale = 1.0f, heightOffset = 0.0f, noData = 0.0f;
-        bool operator==(const Reading & other) const
+        float noData = 0.0f;
+        terrain::HeightScale scale;
+        bool hasSameSamples(const Reading & other) const
         {
-            return channel == other.channel && rawSize == other.rawSize && rawType == other.rawType && isSame(heightScale, other.heightScale) &&
-                   isSame(heightOffset, other.heightOffset) && isSame(noData, other.noData);
+            return channel == other.channel && rawSize == other.rawSize && rawType == other.rawType && isSame(noData, other.noData);
         }
     };
 
@@ -183,6 +185,8 @@ public:
 
     /// The map for this node alone: a copy where others have it too.
     terrain::Result<terrain::MapSource *> ownSource();
+    /// Whether the map has the heights of another scale now, without its file.
+    bool rescale(const terrain::HeightScale & to);
     std::optional<terrain::Error> whyNot(const Rect & rect, const void * heights) const;
 
     std::shared_ptr<SharedMap> map;
@@ -190,6 +194,8 @@ public:
     bool isChanged = true;     ///< a field changed since they were last looked at
     bool isStale = true;       ///< the file must be read
     bool isFromFile = false;   ///< the map is
+    bool isEdited = false;     ///< and is no longer what the file says
+    double lost = 0.0;         ///< by rescaling, at most, in parts of the range of heights
     bool hasFailed = false;    ///< the file could not be read
     bool isEditing = false;
     SbString path;             ///< filename as it was found when the node was read; empty: look again
@@ -282,12 +288,11 @@ void SoHeightMap::bringUpToDate()
         if (pimpl->isFromFile) pimpl->map.reset();
         pimpl->isStale = pimpl->isFromFile = pimpl->hasFailed = false;
     } else {
-        const Private::Reading reading{this->channel.getValue(), this->rawSize.getValue(), this->rawType.getValue(), this->heightScale.getValue(),
-                                       this->heightOffset.getValue(), this->noData.getValue()};
-        if (pimpl->isStale || !(reading == pimpl->reading)) {
-            pimpl->reading = reading;
-            load();
-        }
+        const Private::Reading reading{this->channel.getValue(), this->rawSize.getValue(), this->rawType.getValue(), this->noData.getValue(),
+                                       {this->heightScale.getValue(), this->heightOffset.getValue()}};
+        const bool isKept = !pimpl->isStale && reading.hasSameSamples(pimpl->reading) && pimpl->rescale(reading.scale);
+        pimpl->reading = reading;
+        if (!isKept) load();
     }
     if (!pimpl->map) return;
     const SbVec2f step = this->spacing.getValue(), start = this->origin.getValue();
@@ -311,8 +316,8 @@ void SoHeightMap::load()
     options.channel = pimpl->reading.channel;
     options.rawSize = {pimpl->reading.rawSize[0], pimpl->reading.rawSize[1]};
     options.rawType = terrain::RawType(pimpl->reading.rawType);
-    options.heightScale = pimpl->reading.heightScale;
-    options.heightOffset = pimpl->reading.heightOffset;
+    options.heightScale = pimpl->reading.scale.scale;
+    options.heightOffset = pimpl->reading.scale.offset;
     if (!std::isnan(pimpl->reading.noData)) options.noData = pimpl->reading.noData;
     auto map = terrain::readHeightFile(pimpl->path.getString(), options);
     pimpl->hasFailed = !map;
@@ -327,6 +332,25 @@ void SoHeightMap::load()
     map.value().origin = glm::dvec2(start[0], start[1]);
     pimpl->map = std::make_shared<SharedMap>(SharedMap{std::make_shared<terrain::MapSource>(std::move(map).value()), spacing});
     pimpl->isFromFile = true;
+    pimpl->isEdited = false;
+    pimpl->lost = 0.0;
+}
+
+bool SoHeightMap::Private::rescale(const terrain::HeightScale & to)
+{
+    const terrain::HeightScale & from = reading.scale;
+    if (isSame(from.scale, to.scale) && isSame(from.offset, to.offset)) return true;
+    if (!map || hasFailed) return false;
+    const terrain::HeightRange range(*map->source->map());
+    if (!from.leadsTo(to, range)) return false;
+    // Far below what a pixel shows. Where the file is not all there is, edits count for more.
+    constexpr double kMostLost = 0x1p-17;
+    lost += range.rounding();
+    if (!isEdited && lost > kMostLost) return false;
+    auto scaled = terrain::rescaled(*map->source, from, to);
+    if (!scaled) return false;
+    map = std::make_shared<SharedMap>(SharedMap{std::move(scaled).value(), map->ownSpacing});
+    return true;
 }
 
 terrain::Result<terrain::MapSource *> SoHeightMap::Private::ownSource()
@@ -373,6 +397,7 @@ SbBool SoHeightMap::setHeights(int column, int row, int columns, int rows, const
         return FALSE;
     }
     source.value()->setHeights({{column, row}, {column + columns - 1, row + rows - 1}}, heights);
+    pimpl->isEdited = true;
     tellOfEdit();
     return TRUE;
 }

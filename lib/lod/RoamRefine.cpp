@@ -21,7 +21,10 @@ const auto kLowestFirst = [](const auto& a, const auto& b) { return a.priority >
 
 DrawList RoamMesh::select(const SampleGrid& grid, const View& view, const LodSettings& settings) {
     const bool isFirst = !space_;
-    const bool atRest = !isFirst && !wasEdited_ && report_.converged && view == view_ && settings == settings_;
+    // Where there is nothing left to do, how much of it a frame may do is the same to the mesh.
+    LodSettings unlimited = settings;
+    unlimited.operationLimit = settings_.operationLimit;
+    const bool atRest = !isFirst && !wasEdited_ && report_.converged && view == view_ && unlimited == settings_;
     SelectionReport last = report_;
     report_ = SelectionReport{};
     positionsChanged_ = std::exchange(wasEdited_, false);

@@ -1,23 +1,18 @@
 // Live editing: what a change of samples or of a field does, and what it leaves alone.
-#include "Scenes.h"
+#include "EditScene.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include <Inventor/SoPickedPoint.h>
 #include <Inventor/actions/SoGetBoundingBoxAction.h>
-#include <Inventor/actions/SoRayPickAction.h>
 #include <Inventor/nodes/SoCoordinate3.h>
-#include <Inventor/nodes/SoDirectionalLight.h>
 #include <Inventor/nodes/SoDrawStyle.h>
 #include <Inventor/nodes/SoPerspectiveCamera.h>
 
@@ -29,92 +24,6 @@ using namespace test;
 using terrain::Image;
 
 namespace {
-
-using Heights = std::vector<float>;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-Heights hills(int side) {
-    const terrain::HeightMap map = fractalMap(side, side, 0.12 * side);
-    return Heights(map.heights.begin(), map.heights.end());
-}
-
-/// A round hill on top of what is there, or a hollow.
-Heights bumped(SoHeightMap* map, int column, int row, int size, float height) {
-    Heights heights(std::size_t(size) * std::size_t(size));
-    EXPECT_TRUE(map->getHeights(column, row, size, size, heights.data()));
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x) {
-            const double r = std::hypot(2.0 * x / (size - 1) - 1.0, 2.0 * y / (size - 1) - 1.0);
-            if (r < 1.0) heights[std::size_t(y * size + x)] += height * float(0.5 + 0.5 * std::cos(3.14159265 * r));
-        }
-    return heights;
-}
-
-SoCamera* overhead(int side) {
-    const float s = float(side);
-    return cameraAt(SbVec3f(0.15f * s, 0.1f * s, 0.35f * s), SbVec3f(0.5f * s, 0.5f * s, 0.05f * s), 0.01f * s, 3.0f * s);
-}
-
-/// A terrain over a map of the program's making.
-struct EditScene {
-    Ref<SoSeparator> root = new SoSeparator;
-    SoHeightMap* map = new SoHeightMap;
-    SoTerrainShape* node;
-
-    EditScene(Kind kind, int side, const Heights& heights, float pixelError = 1.0f, bool textured = false) : node(nodeOf(kind, 0, 0, pixelError)) {
-        root->addChild(overhead(side));
-        auto* light = new SoDirectionalLight;
-        light->direction = SbVec3f(0.6f, -0.3f, -0.7f);
-        root->addChild(light);
-        if (textured) addTexture(root.get(), 32);
-        root->addChild(map);
-        root->addChild(node);
-        EXPECT_TRUE(map->setHeights(side, side, heights.data()));
-        if (auto* tiles = dynamic_cast<SoChunkedLoDTerrain*>(node)) tiles->background = FALSE;
-    }
-
-    SbBox3f box() const {
-        SoGetBoundingBoxAction action(SbViewportRegion(100, 100));
-        action.apply(root.get());
-        return action.getBoundingBox();
-    }
-    float heightAt(float x, float y) const {
-        float height = kNaN;
-        node->heightAt(x, y, height);
-        return height;
-    }
-    float pickedHeight(float x, float y) const {
-        SoRayPickAction action(SbViewportRegion(100, 100));
-        action.setRay(SbVec3f(x, y, 5000.0f), SbVec3f(0.0f, 0.0f, -1.0f));
-        action.apply(root.get());
-        const SoPickedPoint* point = action.getPickedPoint();
-        return point ? point->getPoint()[2] : kNaN;
-    }
-};
-
-/// The same scene with nodes that have seen nothing of what was before.
-EditScene fresh(const EditScene& scene, Kind kind, bool textured = false) {
-    int columns = 0, rows = 0;
-    EXPECT_TRUE(scene.map->getSize(columns, rows));
-    Heights heights(std::size_t(columns) * std::size_t(rows));
-    EXPECT_TRUE(scene.map->getHeights(0, 0, columns, rows, heights.data()));
-    EditScene made(kind, columns, heights, scene.node->pixelError.getValue(), textured);
-    made.root->replaceChild(0, scene.root->getChild(0));
-    made.map->spacing = scene.map->spacing.getValue();
-    made.map->origin = scene.map->origin.getValue();
-    return made;
-}
-
-/// Both drawn, and looked at: alike to the last bit where the mesh is the samples, else within what the promise leaves.
-void expectLikeFresh(Stage& stage, const EditScene& scene, Kind kind, const std::string& what, bool textured = false) {
-    const Image edited = stage.render(scene.root.get());
-    const EditScene other = fresh(scene, kind, textured);
-    const Image expected = stage.render(other.root.get());
-    expectAlike(expected, edited, kind == Kind::BruteForce ? 0.0 : kind == Kind::Clipmap ? 0.2 : 1.5, what);
-    if (kind != Kind::Clipmap) {
-        EXPECT_LE(scene.node->getStatistics().errorPixels, scene.node->pixelError.getValue()) << what;
-    }
-}
 
 class Edits : public testing::TestWithParam<Kind> {};
 
@@ -346,70 +255,4 @@ TEST(HeightMapEdits, AreNaNWhereNotFinite)
     ASSERT_TRUE(map->getHeights(0, 0, 3, 3, read.data()));
     EXPECT_TRUE(std::isnan(read[4]) && std::isnan(read[7]));
     EXPECT_EQ(read[8], 8.0f);
-}
-
-namespace {
-
-struct FieldChange {
-    const char* what;
-    std::function<void(SoHeightMap*, SoTerrainShape*)> apply;
-    bool moves = false;  ///< which takes new meshes
-};
-
-const FieldChange kFieldChanges[] = {
-    {"spacing", [](SoHeightMap* map, SoTerrainShape*) { map->spacing = SbVec2f(1.5f, 0.8f); }, true},
-    {"origin", [](SoHeightMap* map, SoTerrainShape*) { map->origin = SbVec2f(7.0f, -3.0f); }, true},
-    {"spacing and origin as before", [](SoHeightMap* map, SoTerrainShape*) { map->spacing = SbVec2f(0.0f, 0.0f), map->origin = SbVec2f(0.0f, 0.0f); }, true},
-    {"the same scale", [](SoHeightMap* map, SoTerrainShape*) { map->heightScale = 0.5f; }},
-    {"pixelError", [](SoHeightMap*, SoTerrainShape* node) { node->pixelError = 4.0f; }},
-    {"frustumCulling", [](SoHeightMap*, SoTerrainShape* node) { node->frustumCulling = FALSE; }},
-    {"frustumCulling as before", [](SoHeightMap*, SoTerrainShape* node) { node->frustumCulling = TRUE; }},
-    {"alternateRep", [](SoHeightMap*, SoTerrainShape* node) { node->alternateRep = new SoSeparator; }},
-};
-
-}  // namespace
-
-TEST_P(Edits, OfFieldsReadNoFileAndMeasureNothingThatStays)
-{
-    constexpr int kSide = 129;
-    const TemporaryFolder folder;
-    const auto write = [](const std::string& path) {
-        std::ofstream file(path, std::ios::binary);
-        for (const float height : hills(kSide)) file.put(char(int(5.0f * height)));
-    };
-    const auto sceneFor = [&](SbVec2f spacing, SbVec2f origin) {
-        EditScene scene(GetParam(), kSide, Heights(kSide * kSide, 0.0f));
-        scene.map->heightScale = 0.5f;
-        scene.map->spacing = spacing;
-        scene.map->origin = origin;
-        scene.map->filename = folder.file("hills.raw").c_str();
-        return scene;
-    };
-    write(folder.file("hills.raw"));
-    EditScene scene = sceneFor({0.0f, 0.0f}, {0.0f, 0.0f});
-    Stage stage;
-    stage.render(scene.root.get());
-    for (const FieldChange& change : kFieldChanges) {
-        SCOPED_TRACE(change.what);
-        std::filesystem::remove(folder.file("hills.raw"));
-        change.apply(scene.map, scene.node);
-        // A message that the file is gone would fail here.
-        const Image picture = stage.render(scene.root.get());
-        if (!change.moves) {
-            EXPECT_EQ(scene.node->getStatistics().buildMilliseconds, 0.0);
-        }
-        EXPECT_TRUE(scene.map->isLoaded());
-        write(folder.file("hills.raw"));
-        EditScene other = sceneFor(scene.map->spacing.getValue(), scene.map->origin.getValue());
-        other.root->replaceChild(0, scene.root->getChild(0));
-        other.node->pixelError = scene.node->pixelError.getValue();
-        other.node->frustumCulling = scene.node->frustumCulling.getValue();
-        expectAlike(stage.render(other.root.get()), picture, GetParam() == Kind::BruteForce ? 0.0 : 3.0, change.what);
-    }
-    // What changes the samples reads them again.
-    std::filesystem::remove(folder.file("hills.raw"));
-    scene.map->heightScale = 0.25f;
-    Messages messages;
-    stage.render(scene.root.get());
-    EXPECT_EQ(messages.all().size(), 1u) << messages.text();
 }
