@@ -80,6 +80,44 @@ TEST_P(Edits, GiveThePictureOfAFreshNode)
     savePicture("edits-" + identifierOf(GetParam()), pictures);
 }
 
+/// A hill, a hole in it and its filling: textured, plain and as wires.
+TEST_P(Edits, LookAsFreshTexturedPlainAndAsWires)
+{
+    constexpr int kSide = 129;
+    for (const bool textured : {true, false})
+        for (const bool wires : {false, true}) {
+            if (textured && wires) continue;
+            EditScene scene(GetParam(), kSide, hills(kSide), 1.0f, textured);
+            const auto dress = [&](SoSeparator* root) {
+                auto* style = new SoDrawStyle;
+                if (wires) style->style = SoDrawStyle::LINES;
+                root->insertChild(style, 1);
+            };
+            dress(scene.root.get());
+            Stage stage;
+            std::vector<Image> pictures = {stage.render(scene.root.get())};
+            const auto look = [&](const std::string& what) {
+                const std::string name = what + (textured ? ", textured" : wires ? ", wires" : ", plain");
+                pictures.push_back(stage.render(scene.root.get()));
+                const EditScene other = fresh(scene, GetParam(), textured);
+                dress(other.root.get());
+                // Lines of another refinement are elsewhere.
+                const double mean = GetParam() == Kind::BruteForce ? 0.0 : wires ? 25.0 : 1.5;
+                expectAlike(stage.render(other.root.get()), pictures.back(), mean, name, wires ? 8 : 2);
+            };
+            ASSERT_TRUE(scene.map->setHeights(40, 30, 33, 33, bumped(scene.map, 40, 30, 33, 14.0f).data()));
+            look("hill");
+            Heights before(9 * 9);
+            ASSERT_TRUE(scene.map->getHeights(52, 38, 9, 9, before.data()));
+            ASSERT_TRUE(scene.map->setHeights(52, 38, 9, 9, Heights(9 * 9, kNaN).data()));
+            look("hole");
+            ASSERT_TRUE(scene.map->setHeights(52, 38, 9, 9, before.data()));
+            look("filled");
+            const std::string style = textured ? "-textured" : wires ? "-wires" : "-plain";
+            savePicture("edits-look-" + identifierOf(GetParam()) + style, pictures);
+        }
+}
+
 /// Sculpting at 1025 x 1025: a brush that moves, a frame for each edit.
 TEST_P(Edits, SendNoMoreThanAMovingFrameAndTheirOwnSamples)
 {

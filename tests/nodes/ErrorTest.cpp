@@ -11,6 +11,8 @@
 
 #include <SoTerrain/SoChunkedLoDTerrain.h>
 #include <SoTerrain/SoGeoMipmapTerrain.h>
+#include <SoTerrain/SoGeometryClipmapTerrain.h>
+#include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoROAMTerrain.h>
 
 using namespace test;
@@ -190,6 +192,54 @@ TEST(PixelError, ThatABudgetPreventsIsToldAsItIs) {
     const Measured measured = measure(stage, root.get(), surface);
     EXPECT_GT(told, 0.5);
     EXPECT_LE(measured.largest, told + 0.1);
+}
+
+/// Also where the clipmap's size is fixed and its bound only told.
+TEST(PixelError, HoldsAfterEdits) {
+    const struct {
+        int column, row, size;
+        float height;
+    } brushes[] = {{90, 90, 33, 25.0f}, {128, 128, 17, -30.0f}, {100, 60, 65, 18.0f}, {60, 128, 5, 12.0f}, {90, 90, 33, -25.0f}};
+    const terrain::HeightMap heights = fractalMap(kSide, kSide, 60.0);
+    Stage stage(kSide, kSide);
+    for (const Kind kind : kLodKinds) {
+        const Ref<SoSeparator> root(new SoSeparator);
+        root->addChild(flight(0));
+        unlitTexture(root.get());
+        auto* map = new SoHeightMap;
+        root->addChild(map);
+        SoTerrainShape* node = nodeOf(kind, 0, 0, 2.0f);
+        root->addChild(node);
+        ASSERT_TRUE(map->setHeights(kSide, kSide, heights.heights.data()));
+        if (auto* tiles = dynamic_cast<SoChunkedLoDTerrain*>(node)) tiles->background = FALSE;
+        if (auto* clipmap = dynamic_cast<SoGeometryClipmapTerrain*>(node)) clipmap->clipmapSize = 63;
+        stage.render(root.get());
+        for (int i = 0; i < int(std::size(brushes)); ++i) {
+            SCOPED_TRACE(std::string(nameOf(kind)) + ", edit " + std::to_string(i));
+            const auto& brush = brushes[i];
+            std::vector<float> edit(std::size_t(brush.size * brush.size));
+            ASSERT_TRUE(map->getHeights(brush.column, brush.row, brush.size, brush.size, edit.data()));
+            for (int j = 0; j < brush.size * brush.size; ++j)
+                edit[std::size_t(j)] += brush.height * std::sin(0.4f * float(j % brush.size)) * std::sin(0.3f * float(j / brush.size));
+            ASSERT_TRUE(map->setHeights(brush.column, brush.row, brush.size, brush.size, edit.data()));
+            root->replaceChild(0, flight(i));
+            for (int frame = 0; frame < 50; ++frame) {
+                stage.render(root.get());
+                if (node->getStatistics().converged) break;
+            }
+            const double told = node->getStatistics().errorPixels;
+            terrain::HeightMap now = heights;
+            ASSERT_TRUE(map->getHeights(0, 0, kSide, kSide, now.heights.data()));
+            const Measured measured = measure(stage, root.get(), surfaceOf(now));
+            EXPECT_LE(measured.largest, told + 0.1);
+            EXPECT_EQ(measured.missing, 0);
+            EXPECT_GT(measured.samples, 1000);
+            if (kind != Kind::Clipmap) {
+                EXPECT_LE(told, 2.0);
+            }
+            std::printf("%s, edit %d: %.2f of %.2f pixels\n", nameOf(kind), i, measured.largest, told);
+        }
+    }
 }
 
 TEST(PixelError, OfBruteForceIsNone) {
