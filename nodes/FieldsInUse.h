@@ -2,11 +2,12 @@
 #ifndef SOTERRAIN_FIELDSINUSE_H
 #define SOTERRAIN_FIELDSINUSE_H
 
-class SoFieldContainer;
-class SoFieldData;
+class SoNode;
+class SoWriteAction;
 
-/// Adds the fields that a file must have: those that are not default, are connected or ignored. In binary files Coin writes all fields of
-/// nodes that are not its own, and refuses what it wrote where one is a null node or NaN.
-void addFieldsInUse(SoFieldData & data, SoFieldContainer * container);
+/// Writes a node into a binary file with the fields that the file must have, those that are not default, are connected or ignored, and with
+/// their descriptions: Coin writes all fields there of nodes that are not its own, and refuses what it wrote where one is a null node or NaN.
+/// False where there is nothing of that to do, in text files and while references are counted: then SoNode::write() does it.
+bool writeFieldsInUse(SoWriteAction * action, SoNode * node);
 
 #endif

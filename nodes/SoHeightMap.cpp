@@ -120,15 +120,12 @@
 #include <string>
 
 #include <Inventor/SoInput.h>
-#include <Inventor/SoOutput.h>
 #include <Inventor/actions/SoCallbackAction.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetBoundingBoxAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
 #include <Inventor/actions/SoPickAction.h>
-#include <Inventor/actions/SoWriteAction.h>
 #include <Inventor/errors/SoDebugError.h>
-#include <Inventor/fields/SoFieldData.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoHeightMapElement.h>
@@ -237,16 +234,7 @@ SoHeightMap::~SoHeightMap() {}
 
 void SoHeightMap::write(SoWriteAction * action)
 {
-    SoOutput * out = action->getOutput();
-    if (!out->isBinary() || out->getStage() != SoOutput::WRITE) {
-        inherited::write(action);
-        return;
-    }
-    if (this->writeHeader(out, FALSE, FALSE)) return;
-    SoFieldData fields;
-    addFieldsInUse(fields, this);
-    fields.write(out, this);
-    this->writeFooter(out);
+    if (!writeFieldsInUse(action, this)) inherited::write(action);
 }
 
 SbBool SoHeightMap::readInstance(SoInput * in, unsigned short flags)

@@ -123,7 +123,6 @@
 #include <cmath>
 #include <cstring>
 
-#include <Inventor/SoOutput.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
 #include <Inventor/bundles/SoMaterialBundle.h>
@@ -147,6 +146,7 @@
 
 #include "DrapeDrawing.h"
 #include "ElementAccess.h"
+#include "FieldsInUse.h"
 #include "StateView.h"
 
 SO_NODE_SOURCE(SoTerrainDrape);
@@ -220,11 +220,9 @@ void SoTerrainDrape::notify(SoNotList * list)
     inherited::notify(list);
 }
 
-void SoTerrainDrape::addWriteReference(SoOutput * out, SbBool isFromField)
+void SoTerrainDrape::write(SoWriteAction * action)
 {
-    // As in SoTerrainShape.
-    this->isBuiltIn = out->isBinary();
-    inherited::addWriteReference(out, isFromField);
+    if (!writeFieldsInUse(action, this)) inherited::write(action);
 }
 
 void SoTerrainDrape::Private::warnOnce(const std::string & text)

@@ -176,6 +176,8 @@
 #include <SoTerrain/SoROAMTerrain.h>
 #include <SoTerrain/SoTerrainTexture.h>
 
+#include "FieldsInUse.h"
+
 SO_KIT_SOURCE(SoTerrainKit)
 
 namespace {
@@ -417,9 +419,21 @@ void SoTerrainKit::copyContents(const SoFieldContainer * from, SbBool copyConnec
 
 void SoTerrainKit::addWriteReference(SoOutput * out, SbBool isFromField)
 {
-    // As in SoTerrainShape.
-    this->isBuiltIn = out->isBinary();
-    inherited::addWriteReference(out, isFromField);
+    if (!out->isBinary()) {
+        inherited::addWriteReference(out, isFromField);
+        return;
+    }
+    // Kits collect what they write while they count references. Here it is known without, and as if the class were Coin's own only
+    // what write() writes is counted.
+    setDefaultOnNonWritingFields();
+    this->isBuiltIn = TRUE;
+    SoNode::addWriteReference(out, isFromField);
+    this->isBuiltIn = FALSE;
+}
+
+void SoTerrainKit::write(SoWriteAction * action)
+{
+    if (!writeFieldsInUse(action, this)) inherited::write(action);
 }
 
 void SoTerrainKit::setDefaultOnNonWritingFields()

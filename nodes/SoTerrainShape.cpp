@@ -66,10 +66,8 @@
 #include <chrono>
 #include <cmath>
 
-#include <Inventor/SoOutput.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
-#include <Inventor/actions/SoWriteAction.h>
 #include <Inventor/bundles/SoMaterialBundle.h>
 #include <Inventor/elements/SoCacheElement.h>
 #include <Inventor/elements/SoClipPlaneElement.h>
@@ -82,7 +80,6 @@
 #include <Inventor/elements/SoShapeHintsElement.h>
 #include <Inventor/elements/SoShapeStyleElement.h>
 #include <Inventor/errors/SoDebugError.h>
-#include <Inventor/fields/SoFieldData.h>
 #include <Inventor/misc/SoState.h>
 
 #include <SoTerrain/SoHeightMap.h>
@@ -199,16 +196,7 @@ void SoTerrainShape::notify(SoNotList * list)
 
 void SoTerrainShape::write(SoWriteAction * action)
 {
-    SoOutput * out = action->getOutput();
-    if (!out->isBinary() || out->getStage() != SoOutput::WRITE) {
-        inherited::write(action);
-        return;
-    }
-    if (this->writeHeader(out, FALSE, FALSE)) return;
-    SoFieldData fields;
-    addFieldsInUse(fields, this);
-    fields.write(out, this);
-    this->writeFooter(out);
+    if (!writeFieldsInUse(action, this)) inherited::write(action);
 }
 
 std::optional<TerrainGrid> SoTerrainShape::Private::findGrid(SoState * state, bool withErrors)

@@ -40,7 +40,7 @@ public:
     virtual void rayPick(SoRayPickAction * action);
     virtual void getPrimitiveCount(SoGetPrimitiveCountAction * action);
     virtual void notify(SoNotList * list);
-    virtual void addWriteReference(SoOutput * out, SbBool isFromField = FALSE);
+    virtual void write(SoWriteAction * action);
 
 protected:
     virtual ~SoTerrainDrape();

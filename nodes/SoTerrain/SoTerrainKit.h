@@ -44,6 +44,7 @@ public:
 
     using inherited::setPart;
     virtual void addWriteReference(SoOutput * out, SbBool isFromField = FALSE);
+    virtual void write(SoWriteAction * action);
 
 protected:
     virtual ~SoTerrainKit();
