@@ -51,6 +51,26 @@ Result<GridRequest> sizesFor(const GridRequest & request, long available, const 
     return sizes;
 }
 
+/// Where in a map a node's samples are.
+struct MapPart {
+    int column, row, columns, rows;
+    SampleGrid of(const terrain::HeightMap & map) const { return SampleGrid(map, column, row, columns, rows); }
+};
+
+Result<MapPart> partOf(const terrain::HeightMap & map, const GridRequest & request)
+{
+    GridRequest part = request;
+    if (part.verticesPerRow == 0) part.verticesPerRow = map.columns;
+    if (part.verticesPerColumn == 0) part.verticesPerColumn = map.rows;
+    const auto sizes = sizesFor(part, long(map.heights.size()), "samples");
+    if (!sizes) return sizes.error();
+    const int column = part.startIndex % map.columns, row = part.startIndex / map.columns;
+    if (column + part.verticesPerRow > map.columns || row + part.verticesPerColumn > map.rows)
+        return Error{"terrain", text(part.verticesPerRow) + " x " + text(part.verticesPerColumn) + " samples from column " + text(column) +
+                     ", row " + text(row), "a height map of " + text(map.columns) + " x " + text(map.rows)};
+    return MapPart{column, row, part.verticesPerRow, part.verticesPerColumn};
+}
+
 }  // namespace
 
 bool GridCache::Entry::isFor(const Entry & key) const
@@ -109,27 +129,21 @@ Result<TerrainGrid> GridCache::findMap(SoState * state, const GridRequest & requ
 {
     const SoHeightMapElement * element = SoHeightMapElement::getInstance(state);
     const terrain::HeightMap & map = *element->getSource()->map();
-    GridRequest part = request;
-    if (part.verticesPerRow == 0) part.verticesPerRow = map.columns;
-    if (part.verticesPerColumn == 0) part.verticesPerColumn = map.rows;
-    const auto sizes = sizesFor(part, long(map.heights.size()), "samples");
-    if (!sizes) return sizes.error();
-    const int column = part.startIndex % map.columns, row = part.startIndex / map.columns;
-    if (column + part.verticesPerRow > map.columns || row + part.verticesPerColumn > map.rows)
-        return Error{"terrain", text(part.verticesPerRow) + " x " + text(part.verticesPerColumn) + " samples from column " + text(column) +
-                     ", row " + text(row), "a height map of " + text(map.columns) + " x " + text(map.rows)};
+    const auto found = partOf(map, request);
+    if (!found) return found.error();
+    const MapPart & part = found.value();
     Entry key;
     key.source = element->getSource();
-    key.columns = part.verticesPerRow;
-    key.rows = part.verticesPerColumn;
-    key.start = part.startIndex;
+    key.columns = part.columns;
+    key.rows = part.rows;
+    key.start = request.startIndex;
     Entry & entry = entryFor(key);
-    entry.grid = SampleGrid(map, column, row, key.columns, key.rows);
+    entry.grid = part.of(map);
     entry.samples = element->getSource()->weak_from_this().lock();
     if (const terrain::MapSource * source = element->getSource()->editable()) {
         if (entry.samples) entry.gate = std::shared_ptr<terrain::SampleGate>(entry.samples, &source->gate());
         const auto edits = source->edits().since(entry.version);
-        const terrain::SampleRect all{{column, row}, {column + key.columns - 1, row + key.rows - 1}};
+        const terrain::SampleRect all{{part.column, part.row}, {part.column + part.columns - 1, part.row + part.rows - 1}};
         // Too many to tell: everything, and holes may be elsewhere.
         update(entry, edits ? edits->within(all) : terrain::GridEdits{{{{0, 0}, all.high - all.low}}, true});
         entry.version = source->edits().version();
@@ -140,7 +154,8 @@ Result<TerrainGrid> GridCache::findMap(SoState * state, const GridRequest & requ
     return complete(entry, withErrors);
 }
 
-Result<TerrainGrid> GridCache::findCoordinates(SoState * state, const GridRequest & request, bool withErrors)
+/// What coordinates are known by.
+Result<GridCache::Entry> GridCache::coordinateKey(SoState * state, const GridRequest & request)
 {
     const SoCoordinateElement * element = SoCoordinateElement::getInstance(state);
     const long available = element->getNum();
@@ -154,7 +169,15 @@ Result<TerrainGrid> GridCache::findCoordinates(SoState * state, const GridReques
     key.columns = sizes.value().verticesPerRow;
     key.rows = sizes.value().verticesPerColumn;
     key.start = sizes.value().startIndex;
-    const float * points = element->getArrayPtr3()[key.start].getValue();
+    return key;
+}
+
+Result<TerrainGrid> GridCache::findCoordinates(SoState * state, const GridRequest & request, bool withErrors)
+{
+    const auto found = coordinateKey(state, request);
+    if (!found) return found.error();
+    const Entry & key = found.value();
+    const float * points = SoCoordinateElement::getInstance(state)->getArrayPtr3()[key.start].getValue();
     Entry * entry = known(key);
     if (!entry) entry = changedEntry(key, points);
     if (!entry) entry = &entryFor(key);
@@ -196,6 +219,22 @@ Result<TerrainGrid> GridCache::find(SoState * state, const GridRequest & request
 {
     const terrain::HeightSource * source = SoHeightMapElement::getInstance(state)->getSource();
     return source && source->map() ? findMap(state, request, withErrors) : findCoordinates(state, request, withErrors);
+}
+
+Result<SampleGrid> GridCache::findSamples(SoState * state, const GridRequest & request)
+{
+    const terrain::HeightSource * source = SoHeightMapElement::getInstance(state)->getSource();
+    if (source && source->map()) {
+        const auto part = partOf(*source->map(), request);
+        return part ? Result<SampleGrid>(part.value().of(*source->map())) : Result<SampleGrid>(part.error());
+    }
+    const auto key = coordinateKey(state, request);
+    if (!key) return key.error();
+    const float * points = SoCoordinateElement::getInstance(state)->getArrayPtr3()[key.value().start].getValue();
+    if (Entry * entry = known(key.value())) return entry->grid.movedTo(points);
+    auto grid = SampleGrid::overPoints(points, key.value().columns, key.value().rows);
+    if (grid) entryFor(key.value()).grid = grid.value();
+    return grid;
 }
 
 std::size_t GridCache::bytes() const

@@ -37,6 +37,8 @@ class GridCache {
 public:
     /// Error: no height map and no coordinates, fewer coordinates than the fields ask for, sizes that make no grid.
     terrain::Result<TerrainGrid> find(SoState * state, const GridRequest & request, bool withErrors);
+    /// The samples alone, whose bounds nobody needs; nothing of them is kept alive. Errors as find().
+    terrain::Result<terrain::SampleGrid> findSamples(SoState * state, const GridRequest & request);
     std::size_t bytes() const;
 
 private:
@@ -59,6 +61,7 @@ private:
         terrain::TerrainModel model() const { return {boxes, errors, samples, gate, edits}; }
         bool isFor(const Entry & key) const;
     };
+    static terrain::Result<Entry> coordinateKey(SoState * state, const GridRequest & request);
     Entry * known(const Entry & key);
     Entry & entryFor(const Entry & key);
     void update(Entry & entry, const terrain::GridEdits & edits);

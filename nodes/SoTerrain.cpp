@@ -10,6 +10,7 @@
 #include <SoTerrain/SoTerrainDetail.h>
 #include <SoTerrain/SoTerrainDrape.h>
 #include <SoTerrain/SoTerrainKit.h>
+#include <SoTerrain/SoTerrainPlacement.h>
 #include <SoTerrain/SoTerrainShape.h>
 #include <SoTerrain/SoTerrainTexture.h>
 #include <SoTerrain/SoTerrainTextureElement.h>
@@ -33,6 +34,7 @@ void SoTerrain::init()
     SoROAMTerrain::initClass();
     SoTerrainDrape::initClass();
     SoTerrainKit::initClass();
+    SoTerrainPlacement::initClass();
 }
 
 const char * SoTerrain::getVersion()

@@ -21,6 +21,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "FaceNormal.h"
 #include "ParentNode.h"
 #include "StateAttributes.h"
 #include "lod/BruteForceMesh.h"
@@ -38,29 +39,8 @@ SbVec3f toCoin(const glm::dvec3 & v)
     return SbVec3f(float(v.x), float(v.y), float(v.z));
 }
 
-/// Normal of a triangle in local coordinates, up where up is known.
-SbVec3f faceNormal(const terrain::SampleGrid & grid, const SbVec3f (&corner)[3])
-{
-    SbVec3f normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    normal.normalize();
-    if (grid.isRegular() && normal[grid.heightAxis()] < 0.0f) normal.negate();
-    return normal;
-}
-
-/// Geometric normal of a cell's triangle.
-SbVec3f faceNormal(const terrain::SampleGrid & grid, int column, int row, int triangle)
-{
-    SbVec3f corner[3];
-    for (int i = 0; i < 3; ++i) {
-        const auto & offset = terrain::kCellTriangles[triangle][i];
-        const glm::vec3 p = grid.position(column + offset[0], row + offset[1]);
-        corner[i].setValue(p.x, p.y, p.z);
-    }
-    return faceNormal(grid, corner);
-}
-
 /// Geometric normal of the finest triangle over a place in the frame.
-SbVec3f faceNormal(const terrain::SampleGrid & grid, const terrain::SynthesisedDetail & detail, const glm::dvec2 & place)
+SbVec3f finestNormal(const terrain::SampleGrid & grid, const terrain::SynthesisedDetail & detail, const glm::dvec2 & place)
 {
     const auto triangle = terrain::finestTriangle(grid, detail, place);
     SbVec3f corner[3];
@@ -113,7 +93,7 @@ private:
 /// Geometric normal of what was hit.
 SbVec3f normalOfHit(const terrain::SampleGrid & grid, const terrain::SynthesisedDetail * detail, const terrain::RayHit & hit)
 {
-    return detail ? faceNormal(grid, *detail, glm::dvec2(hit.point)) : faceNormal(grid, hit.column, hit.row, hit.triangle);
+    return detail ? finestNormal(grid, *detail, glm::dvec2(hit.point)) : faceNormal(grid, hit.column, hit.row, hit.triangle);
 }
 
 /// Normal, texture coordinate and material of a hit, from the corners of its triangle.
@@ -290,7 +270,7 @@ SbBool SoTerrainShape::heightAt(float x, float y, float & height, SbVec3f * norm
         height = surface->height;
         found = TRUE;
         if (!normal) return;
-        *normal = finer ? faceNormal(data->grid, *finer, place) : faceNormal(data->grid, surface->column, surface->row, surface->triangle);
+        *normal = finer ? finestNormal(data->grid, *finer, place) : faceNormal(data->grid, surface->column, surface->row, surface->triangle);
     };
     this->ref();
     SoPath * walked = path ? path : pathFromTop(this);

@@ -14,6 +14,7 @@
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoTerrainDrape.h>
 #include <SoTerrain/SoTerrainKit.h>
+#include <SoTerrain/SoTerrainPlacement.h>
 
 using namespace test;
 
@@ -56,7 +57,9 @@ std::vector<Ref<SoSeparator>> scenes() {
     auto* kit = new SoTerrainKit;
     kit->alternateRep = cube();
     static_cast<SoMaterial*>(kit->getPart("material", TRUE))->shininess = 0.75f;
-    return {sceneWith(drape, "point [ 1 2, 3 4.5 ] numVertices [ 1, 1 ] offset 2.5 closed TRUE"),
+    auto* placement = new SoTerrainPlacement;
+    return {sceneWith(placement, "point 3 4 align TRUE verticesPerRow 9"),
+            sceneWith(drape, "point [ 1 2, 3 4.5 ] numVertices [ 1, 1 ] offset 2.5 closed TRUE"),
             sceneWith(kit, "algorithm GEO_MIPMAP heightMap SoHeightMap { heightScale 3 }")};
 }
 
