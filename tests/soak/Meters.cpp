@@ -59,7 +59,7 @@ Table::Table(const std::string& path, const std::vector<std::string>& glKinds) :
     if (!file_) return;
     std::fprintf(file_, "seconds,at rest,resident MB,heap MB,GL MB,threads,files,mean frame ms,longest frame ms");
     for (const std::string& kind : glKinds) std::fprintf(file_, ",%s", kind.c_str());
-    std::fprintf(file_, "\n");
+    std::fprintf(file_, ",kept by Coin MB\n");
 }
 
 Table::~Table() {
@@ -71,7 +71,7 @@ void Table::add(const Reading& r) {
     std::fprintf(file_, "%.1f,%d,%.2f,%.3f,%.2f,%d,%d,%.2f,%.2f", r.seconds, r.atRest, r.residentMegabytes, r.heapMegabytes,
                  r.glMegabytes, r.threads, r.files, r.meanFrameMilliseconds, r.longestFrameMilliseconds);
     for (const std::size_t count : r.glObjects) std::fprintf(file_, ",%zu", count);
-    std::fprintf(file_, "\n");
+    std::fprintf(file_, ",%.3f\n", r.coinMegabytes);
     std::fflush(file_);
 }
 
@@ -132,8 +132,8 @@ std::string verdict(const std::vector<Reading>& atRest, const std::vector<std::s
         return "  too short: four readings at rest are needed after the warm-up\n";
     }
     // What Coin and the GL driver keep of names and compiled code levels off slowly.
-    judge("resident", "MB", {0.02, 6.0}, [](const Reading& r) { return r.residentMegabytes; });
-    judge("heap in use", "MB", {0.01, 1.0}, [](const Reading& r) { return r.heapMegabytes; });
+    judge("resident", "MB", {0.02, 6.0}, [](const Reading& r) { return r.residentMegabytes - r.coinMegabytes; });
+    judge("heap in use", "MB", {0.005, 0.5}, [](const Reading& r) { return r.heapMegabytes - r.coinMegabytes; });
     judge("threads", "", {0.0, 1.5}, [](const Reading& r) { return double(r.threads); });
     judge("open files", "", {0.0, 1.5}, [](const Reading& r) { return double(r.files); });
     for (std::size_t kind = 0; kind < glKinds.size(); ++kind) {

@@ -18,7 +18,8 @@ struct Reading {
     int threads = 0;
     int files = 0;
     double meanFrameMilliseconds = 0.0, longestFrameMilliseconds = 0.0;
-    bool atRest = false;  ///< all nodes and contexts are gone
+    double coinMegabytes = 0.0;  ///< of the heap, what Coin keeps of contexts that went
+    bool atRest = false;         ///< all nodes and contexts are gone
 };
 
 /// Reads memory, threads and open files. `trim`: gives the system back what the allocator keeps, so that readings compare.

@@ -229,6 +229,7 @@ void World::openWindow() {
     window->handle = eglGetCurrentContext();
     ledger_.disregard(window->handle);
     if (partner) ledger_.share(window->handle, partner->handle);
+    if (!partner) ++contexts_;
     window->action = std::make_unique<SoGLRenderAction>(SbViewportRegion(320, 240));
     std::uint32_t id = partner ? partner->action->getCacheContext() : 0;
     if (!partner && !freeIds_.empty()) {

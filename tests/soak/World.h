@@ -38,6 +38,8 @@ public:
     /// Deletes scene and windows and begins anew, so that what is left is the same each time.
     void end();
     std::size_t glBytes() const;
+    /// How many contexts there were so far, those that share counted as one.
+    std::size_t contexts() const { return contexts_; }
     /// How often each deed was done, and what went wrong, one a line.
     std::string report() const;
     int problems() const { return problems_; }
@@ -74,7 +76,8 @@ private:
     int side_ = 0;
     app::NodePtr<SoSeparator> scene_;  ///< data, texture, terrain
     std::vector<std::unique_ptr<Window>> windows_;
-    std::vector<std::uint32_t> freeIds_;  ///< of contexts that went: Coin keeps 6 KB for each id that it ever saw
+    std::vector<std::uint32_t> freeIds_;  ///< of contexts that went, for others
+    std::size_t contexts_ = 0;
     std::vector<std::size_t> deeds_;
     std::size_t frames_ = 0;
     int problems_ = 0;
