@@ -175,21 +175,9 @@ ClipmapView::ClipmapView(const TerrainFrame & frame, const terrain::ClipmapShape
 {
 }
 
-std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, const ClipmapOptions & options, const terrain::ClipmapErrors * errors,
-                                                  SoTerrainStatistics & statistics)
+terrain::ClipmapDrawing ClipmapView::drawingOf(const TerrainFrame & frame, const ClipmapOptions & options)
 {
-    const terrain::SampleGrid & grid = frame.data.grid;
-    const Clock::time_point start = Clock::now();
-    const terrain::Clipmap::Frame & chosen = options.freeze && hasFrame_
-                                                 ? clipmap_.again()
-                                                 : clipmap_.select(grid, *frame.data.model.boxes, errors, frame.camera, options.settings);
-    hasFrame_ = true;
-    statistics.selectMilliseconds = millisecondsSince(start);
-
-    const Clock::time_point selected = Clock::now();
-    const glm::dmat4 & localFromFrame = grid.localFromFrame();
-    const auto length = [&](int axis) { return glm::length(glm::dvec3(localFromFrame[axis])); };
-    const terrain::ClipmapTextures::Source source{grid, detail_.get(), glm::vec2(length(2) / length(0), length(2) / length(1)), clipmap_.valid()};
+    const glm::dmat4 & localFromFrame = frame.data.grid.localFromFrame();
     const glm::dmat4 modelView = matrixOf(GL_MODELVIEW_MATRIX);
     terrain::ClipmapDrawing drawing;
     drawing.shading = shadingOf(frame);
@@ -206,11 +194,33 @@ std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, co
     drawing.localViewer = isOn(GL_LIGHT_MODEL_LOCAL_VIEWER);
     drawing.blendNormals = options.blendNormals;
     drawing.texture = frame.texture.clipmap;
+    return drawing;
+}
+
+std::optional<terrain::Error> ClipmapView::render(const TerrainFrame & frame, const ClipmapOptions & options, const terrain::ClipmapErrors * errors,
+                                                  SoTerrainStatistics & statistics)
+{
+    const terrain::SampleGrid & grid = frame.data.grid;
+    const terrain::ClipmapDrawing drawing = drawingOf(frame, options);
+    if (problem_ && problemShading_ == drawing.shading) return problem_;
+    problem_.reset();
+    const Clock::time_point start = Clock::now();
+    const terrain::Clipmap::Frame & chosen = options.freeze && hasFrame_
+                                                 ? clipmap_.again()
+                                                 : clipmap_.select(grid, *frame.data.model.boxes, errors, frame.camera, options.settings);
+    hasFrame_ = true;
+    statistics.selectMilliseconds = millisecondsSince(start);
+
+    const Clock::time_point selected = Clock::now();
+    const glm::dmat4 & localFromFrame = grid.localFromFrame();
+    const auto length = [&](int axis) { return glm::length(glm::dvec3(localFromFrame[axis])); };
+    const terrain::ClipmapTextures::Source source{grid, detail_.get(), glm::vec2(length(2) / length(0), length(2) / length(1)), clipmap_.valid()};
     const auto drawn = renderer_.draw(chosen, source, drawing);
     if (!drawn) {
-        clipmap_.forget();
+        terrain::deleteNames(release());
         hasFrame_ = false;
-        return drawn.error();
+        problemShading_ = drawing.shading;
+        return problem_ = drawn.error();
     }
     statistics.drawMilliseconds = millisecondsSince(selected);
     statistics.uploadedBytes = drawn.value().uploadedBytes;

@@ -32,7 +32,8 @@ public:
     {
         return shape == shape_ && memoryFree == memoryFree_ && detail == detail_;
     }
-    /// Draws, and fills in the statistics and the view's report. Returns what is wrong with GL, or nothing.
+    /// Draws, and fills in the statistics and the view's report. Returns what is wrong with GL, or nothing. Where something is, the view has no
+    /// GL objects and does not try again as long as the same is asked of GL.
     std::optional<terrain::Error> render(const TerrainFrame & frame, const ClipmapOptions & options, const terrain::ClipmapErrors * errors,
                                          SoTerrainStatistics & statistics);
 
@@ -43,12 +44,16 @@ public:
     std::size_t bufferBytes() const override { return renderer_.bufferBytes(); }
 
 private:
+    static terrain::ClipmapDrawing drawingOf(const TerrainFrame & frame, const ClipmapOptions & options);
+
     terrain::ClipmapShape shape_;
     bool memoryFree_;
     std::shared_ptr<const terrain::SynthesisedDetail> detail_;
     terrain::Clipmap clipmap_;
     terrain::ClipmapRenderer renderer_;
     bool hasFrame_ = false;
+    std::optional<terrain::Error> problem_;   ///< why it can't be drawn
+    terrain::ClipmapShading problemShading_;  ///< with this
 };
 
 /// Why the state can't be drawn by vertex textures; empty where it can. `isAffine`: StateAttributes::hasAffineTextureCoordinates().

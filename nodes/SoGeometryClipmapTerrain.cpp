@@ -314,7 +314,6 @@ SbBool SoGeometryClipmapTerrain::renderOwn(const TerrainFrame & frame, SoTerrain
     }
     if (const auto problem = view->render(frame, options, errors.get(), statistics)) {
         warnOnce((problem->message() + "; vertex arrays are used").c_str());
-        TerrainViews::discardDrawing(frame.view);
         return FALSE;
     }
     // Errors that are still to come decide about levels.

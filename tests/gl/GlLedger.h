@@ -85,6 +85,8 @@ public:
             if (counts[kind] > 0) text += (text.empty() ? "" : ", ") + std::to_string(counts[kind]) + ' ' + nameOf(kind);
         return text.empty() ? "none" : text;
     }
+    /// How many were made so far.
+    std::size_t born() const { return born_; }
     /// Deletions of what did not exist in the current context, or without any.
     const std::vector<std::string>& strays() const { return strays_; }
 
@@ -106,6 +108,7 @@ private:
     }
     void born(int kind, GLuint name) {
         if (name) namesOf(kind)[{kind, name}] = true;
+        born_ += name != 0;
     }
     void dead(int kind, GLuint name) {
         if (name && namesOf(kind).erase({kind, name}) == 0)
@@ -188,6 +191,7 @@ private:
     static inline GlLedger* ledger_ = nullptr;
     Context (*current_)();
     int nextGroup_ = 0;
+    std::size_t born_ = 0;
     std::map<Context, int> groups_;
     std::map<Context, Names> own_;  ///< what GL does not share
     std::map<int, Names> shared_;   ///< by group

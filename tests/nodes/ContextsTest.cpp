@@ -355,6 +355,67 @@ INSTANTIATE_TEST_SUITE_P(, Contexts,
                                          Subject{Kind::Clipmap}, Subject{Kind::Clipmap, true}),
                          [](const auto& info) { return identifierOf(info.param); });
 
+namespace {
+
+/// While one lives, programs don't link from that one on which is made after so many others.
+class BrokenLinker {
+public:
+    explicit BrokenLinker(int good) {
+        good_ = good;
+        made_ = 0;
+        real_ = std::exchange(epoxy_glGetProgramiv, &query);
+    }
+    ~BrokenLinker() { epoxy_glGetProgramiv = real_; }
+    BrokenLinker(const BrokenLinker&) = delete;
+    BrokenLinker& operator=(const BrokenLinker&) = delete;
+    /// How many programs were linked.
+    int made() const { return made_; }
+
+private:
+    static void query(GLuint program, GLenum what, GLint* value) {
+        epoxy_glGetProgramiv = real_;
+        epoxy_glGetProgramiv(program, what, value);
+        real_ = std::exchange(epoxy_glGetProgramiv, &query);
+        if (what == GL_LINK_STATUS && ++made_ > good_) *value = GL_FALSE;
+    }
+    static inline PFNGLGETPROGRAMIVPROC real_ = nullptr;
+    static inline int good_ = 0, made_ = 0;
+};
+
+}  // namespace
+
+TEST(ClipmapsOfContexts, WhereGlFailsAreNotTriedAgainButInOthers) {
+    for (const int good : {0, 1}) {
+        GlLedger ledger(currentContext);
+        const auto root = sceneOf(Kind::Clipmap, surfaceOf(fractalMap(65, 65, 20.0)));
+        auto* node = static_cast<SoGeometryClipmapTerrain*>(terrainIn(root.get()));
+        node->clipmapSize = 31;
+        Canvas broken(ledger), whole(ledger);
+        const Messages messages;
+        Image picture;
+        {
+            const BrokenLinker linker(good);
+            picture = broken.render(root.get());
+            const int tried = linker.made();
+            EXPECT_EQ(tried, good + 1);
+            for (int i = 0; i < 3; ++i) broken.render(root.get());
+            const auto before = ledger.born();
+            for (int i = 0; i < 5; ++i) broken.render(root.get());
+            EXPECT_EQ(ledger.born(), before) << "GL objects are made in every frame";
+            node->clipmapSize = 15;
+            broken.render(root.get());
+            EXPECT_EQ(linker.made(), tried) << "what does not link in a context will not do so later";
+        }
+        EXPECT_EQ(messages.all().size(), 2u) << "once, and once more after a field was set";
+        EXPECT_GT(coveredPixels(picture), 1000);
+        node->clipmapSize = 31;
+        whole.render(root.get());
+        EXPECT_GT(ledger.all()[GlLedger::Program], std::size_t(good)) << "not tried in another context";
+        broken.tell(), whole.tell();
+        EXPECT_EQ(ledger.total(), 0u) << GlLedger::text(ledger.all());
+    }
+}
+
 TEST(TilesOfContexts, MayBeOnTheirWayWhenTheContextGoes) {
     GlLedger ledger(currentContext);
     const auto root = sceneOf(Kind::ChunkedLod, surfaceOf(fractalMap(257, 257, 60.0)), {.pixelError = 0.5f}, unlitTexture);
