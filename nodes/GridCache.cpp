@@ -121,7 +121,7 @@ void GridCache::update(Entry & entry, const terrain::GridEdits & edits)
     const terrain::ProfileScope scope("grid: edit");
     for (const terrain::SampleRect & rect : edits.rects) entry.boxes->update(entry.grid, rect);
     if (entry.errors)
-        for (const terrain::SampleRect & rect : edits.rects) entry.errors->update(entry.grid, rect, entry.boxes->hasHoles());
+        for (const terrain::SampleRect & rect : edits.rects) entry.errors->update(entry.grid, rect, *entry.boxes);
     entry.edits->add(edits);
 }
 

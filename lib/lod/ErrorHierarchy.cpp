@@ -10,6 +10,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "lod/TriangleSearch.h"
+
 namespace terrain {
 
 namespace {
@@ -66,6 +68,15 @@ public:
         resident_.visit(row);
         return deviation;
     }
+    /// The same of samples [part.x, part.y] of the row.
+    float partDeviation(int row, glm::ivec2 part, int first, float start, float step) const {
+        const std::size_t stride = grid_.heightStride();
+        const float* sample = grid_.heightRow(row) + std::size_t(first) * stride;
+        float deviation = 0.0f;
+        for (int i = part.x - first; i <= part.y - first; ++i)
+            deviation = std::max(deviation, std::fabs(sample[std::size_t(i) * stride] - (start + float(i) * step)));
+        return deviation;
+    }
 
 private:
     const SampleGrid& grid_;
@@ -109,35 +120,47 @@ void forEachRow(const DiamondShape& d, int half, Visit visit) {
     }
 }
 
-/// Largest deviation of the samples of one triangle from the plane through its corners.
 template <class Samples>
-float triangleDeviation(const Samples& samples, const DiamondShape& d, int half) {
+TrianglePlane<typename Samples::Value> planeOf(const Samples& samples, const DiamondShape& d, int half) {
     using Value = typename Samples::Value;
     const glm::ivec2 apex = d.corner[half ? 3 : 1];
     const Value atApex = samples.at(apex), at0 = samples.at(d.corner[0]), at2 = samples.at(d.corner[2]);
     const float span = 1.0f / float(2 * d.size);
-    Value gradientX, gradientY;
     if (d.isSquare) {
         const bool zeroSharesRow = d.corner[0].y == apex.y;
         const Value alongX = zeroSharesRow ? at0 : at2, alongY = zeroSharesRow ? at2 : at0;
-        gradientX = (alongX - atApex) * (d.centre.x > apex.x ? span : -span);
-        gradientY = (alongY - atApex) * (d.centre.y > apex.y ? span : -span);
-    } else {
-        const Value middle = (at0 + at2) * 0.5f;
-        const bool edgeAlongX = d.corner[0].y == d.corner[2].y;
-        const Value alongEdge =
-            (at2 - at0) * ((edgeAlongX ? d.corner[2].x > d.corner[0].x : d.corner[2].y > d.corner[0].y) ? span : -span);
-        const bool positive = edgeAlongX ? d.centre.y > apex.y : d.centre.x > apex.x;
-        const Value across = (middle - atApex) * ((positive ? 2.0f : -2.0f) * span);
-        gradientX = edgeAlongX ? alongEdge : across;
-        gradientY = edgeAlongX ? across : alongEdge;
+        return {apex, atApex, (alongX - atApex) * (d.centre.x > apex.x ? span : -span), (alongY - atApex) * (d.centre.y > apex.y ? span : -span)};
     }
+    const Value middle = (at0 + at2) * 0.5f;
+    const bool edgeAlongX = d.corner[0].y == d.corner[2].y;
+    const Value alongEdge = (at2 - at0) * ((edgeAlongX ? d.corner[2].x > d.corner[0].x : d.corner[2].y > d.corner[0].y) ? span : -span);
+    const bool positive = edgeAlongX ? d.centre.y > apex.y : d.centre.x > apex.x;
+    const Value across = (middle - atApex) * ((positive ? 2.0f : -2.0f) * span);
+    return {apex, atApex, edgeAlongX ? alongEdge : across, edgeAlongX ? across : alongEdge};
+}
+
+/// Largest deviation of the samples of one triangle from the plane through its corners.
+template <class Samples>
+float triangleDeviation(const Samples& samples, const DiamondShape& d, int half) {
+    const auto plane = planeOf(samples, d, half);
     float deviation = 0.0f;
     forEachRow(d, half, [&](int row, int first, int last) {
-        const Value start = atApex + gradientX * float(first - apex.x) + gradientY * float(row - apex.y);
-        deviation = std::max(deviation, samples.rowDeviation(row, first, last, start, gradientX));
+        deviation = std::max(deviation, samples.rowDeviation(row, first, last, plane.at(first, row), plane.gradientX));
     });
     return deviation;
+}
+
+/// The same where it is more than `known`, else that. `boxes`: of the samples, or null.
+template <class Samples>
+float deviationAbove(const Samples& samples, const BoxPyramid*, const DiamondShape& d, int half, float known) {
+    return std::max(known, triangleDeviation(samples, d, half));
+}
+
+template <>
+float deviationAbove(const HeightsInPlace& heights, const BoxPyramid* boxes, const DiamondShape& d, int half, float known) {
+    constexpr int kLarge = 2 * BoxPyramid::kBlockCells;
+    if (!boxes || d.size < kLarge) return std::max(known, triangleDeviation(heights, d, half));
+    return TriangleSearch(heights, *boxes, d, half, planeOf(heights, d, half)).above(known);
 }
 
 /// Finest diamonds cover no sample but their corners and centre.
@@ -268,17 +291,12 @@ SampleRect whole(const SampleGrid& grid) {
 template <class Samples, class PlaceOf>
 class Measurement {
 public:
-    Measurement(const SampleGrid& grid, Coverage& coverage, std::vector<std::uint16_t>& codes, PlaceOf placeOf)
-        : grid_(grid), samples_(grid), coverage_(coverage), codes_(codes), placeOf_(placeOf) {}
+    Measurement(const SampleGrid& grid, Coverage& coverage, std::vector<std::uint16_t>& codes, PlaceOf placeOf, const BoxPyramid* boxes = nullptr)
+        : grid_(grid), samples_(grid), coverage_(coverage), codes_(codes), placeOf_(placeOf), boxes_(boxes) {}
 
     void operator()(const DiamondShape& d) {
-        float deviation = 0.0f;
-        for (int half = 0; half < 2; ++half) {
-            const State state = coverage_.triangle(d, half);
-            if (state == Mixed) deviation = kInfinity;
-            if (state == Full) deviation = std::max(deviation, triangleDeviation(samples_, d, half));
-        }
-        std::uint16_t code = ErrorHierarchy::encode(deviation);
+        // What its children are off by is known.
+        std::uint16_t code = 0;
         for (int side = 0; side < 4; ++side) {
             const glm::ivec2 child = d.child(side);
             if (!grid_.contains(child.x, child.y)) continue;
@@ -286,7 +304,12 @@ public:
             code = std::max(code, d.size == 1 && d.isSquare ? finestCode(grid_, DiamondShape(child), !coverage_.hasHoles())
                                                             : codes_[placeOf_(child)]);
         }
-        codes_[placeOf_(d.centre)] = code;
+        const State states[2] = {coverage_.triangle(d, 0), coverage_.triangle(d, 1)};
+        if (states[0] == Mixed || states[1] == Mixed) code = ErrorHierarchy::encode(kInfinity);
+        float deviation = ErrorHierarchy::decode(code);
+        for (int half = 0; half < 2 && deviation < kInfinity; ++half)
+            if (states[half] == Full) deviation = deviationAbove(samples_, boxes_, d, half, deviation);
+        codes_[placeOf_(d.centre)] = ErrorHierarchy::encode(deviation);
     }
 
 private:
@@ -295,6 +318,7 @@ private:
     Coverage& coverage_;
     std::vector<std::uint16_t>& codes_;
     PlaceOf placeOf_;
+    const BoxPyramid* boxes_;
 };
 
 template <class Samples, class PlaceOf>
@@ -305,8 +329,8 @@ void measure(const SampleGrid& grid, int side, Coverage& coverage, std::vector<s
 /// The same for diamonds that cover changed samples, and for those whose children have another error now.
 template <class Samples, class PlaceOf>
 void measureAgain(const SampleGrid& grid, const SampleRect& changed, int side, Coverage& coverage, std::vector<std::uint16_t>& codes,
-                  PlaceOf placeOf) {
-    Measurement<Samples, PlaceOf> measurement(grid, coverage, codes, placeOf);
+                  PlaceOf placeOf, const BoxPyramid& boxes) {
+    Measurement<Samples, PlaceOf> measurement(grid, coverage, codes, placeOf, &boxes);
     std::unordered_set<std::size_t> others;
     const auto isDue = [&](const DiamondShape& d) {
         // Errors of the finest are not stored.
@@ -348,7 +372,8 @@ ErrorHierarchy::ErrorHierarchy(const SampleGrid& grid) : columns_(grid.columns()
         measure<CurvedPoints>(grid, side(), coverage, codes_, placeOf);
 }
 
-void ErrorHierarchy::update(const SampleGrid& grid, const SampleRect& rect, bool hasHoles) {
+void ErrorHierarchy::update(const SampleGrid& grid, const SampleRect& rect, const BoxPyramid& boxes) {
+    const bool hasHoles = boxes.hasHoles();
     const SampleRect changed = rect.cutTo(terrain::whole(grid));
     if (changed.isEmpty()) return;
     if (hasHoles && hasHoles_ && states_.empty()) {
@@ -364,9 +389,9 @@ void ErrorHierarchy::update(const SampleGrid& grid, const SampleRect& rect, bool
     whole_ = !hasHoles_ && columns_ == side() + 1 && rows_ == side() + 1;
     const auto placeOf = [this](glm::ivec2 centre) { return place(centre); };
     if (grid.isRegular())
-        measureAgain<HeightsInPlace>(grid, changed, side(), coverage, codes_, placeOf);
+        measureAgain<HeightsInPlace>(grid, changed, side(), coverage, codes_, placeOf, boxes);
     else
-        measureAgain<CurvedPoints>(grid, changed, side(), coverage, codes_, placeOf);
+        measureAgain<CurvedPoints>(grid, changed, side(), coverage, codes_, placeOf, boxes);
     states_ = coverage.states();
 }
 

@@ -10,6 +10,7 @@
 
 #include "height/SampleGrid.h"
 #include "height/SampleRect.h"
+#include "lod/BoxPyramid.h"
 #include "lod/DiamondTopology.h"
 
 namespace terrain {
@@ -32,9 +33,10 @@ public:
     explicit ErrorHierarchy(const SampleGrid& grid);
 
     /// Samples within `rect` have changed, of a grid of the same size and kind: brings up to date what depends on them. Bit for bit
-    /// what building it anew gives. `hasHoles`: whether any sample is one now. It goes over the samples of all diamonds that hold
-    /// changed ones: about three times the grid's at most, in consecutive rows.
-    void update(const SampleGrid& grid, const SampleRect& rect, bool hasHoles);
+    /// what building it anew gives. `boxes` are up to date. Of large diamonds of a regular grid it looks only where heights by these
+    /// may be further off than what is known already (TriangleSearch.h); of a curved one it goes over the samples of all diamonds that
+    /// hold changed ones: about three times the grid's at most, in consecutive rows.
+    void update(const SampleGrid& grid, const SampleRect& rect, const BoxPyramid& boxes);
 
     /// The error of a diamond depends on samples within so many times its size of its centre: because errors are monotone, on all that
     /// its children's depend on, half of whose triangles are not its own.

@@ -53,7 +53,7 @@ public:
                 edits.holes = edits.holes || was != isHole;
             }
         for (const SampleRect& r : edits.rects) boxes_->update(grid_, r);
-        for (const SampleRect& r : edits.rects) errors_->update(grid_, r, boxes_->hasHoles());
+        for (const SampleRect& r : edits.rects) errors_->update(grid_, r, *boxes_);
         log_->add(edits);
         return edits;
     }
