@@ -39,6 +39,7 @@
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoTranslation.h>
 
+#include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoTerrain.h>
 #include <SoTerrain/SoTerrainShape.h>
 
@@ -226,6 +227,26 @@ Held<SoSeparator> read(const std::string& text) {
     return root ? held(root) : nullptr;
 }
 
+/// Other heights for a rectangle, or a map of such a size, whatever the numbers say: only those that fit have as many floats.
+void changeHeights(SoHeightMap* map, std::istringstream& words) {
+    constexpr long kMost = 1600;
+    int column = 0, row = 0, columns = 0, rows = 0, mapColumns = 0, mapRows = 0;
+    unsigned seed = 0;
+    if (!(words >> column >> row >> columns >> rows >> seed)) return;
+    const bool isSmall = columns > 0 && rows > 0 && long(columns) * long(rows) <= kMost;
+    std::vector<float> heights(isSmall ? std::size_t(columns) * std::size_t(rows) : 1);
+    std::mt19937 random(seed);
+    for (float& height : heights)
+        height = random() % 8 ? float(random() % 100) / 20.0f : float(fuzz::kNumbers[random() % fuzz::kNumbers.size()]);
+    if (seed % 4 == 0 && (isSmall || columns < 2 || rows < 2)) map->setHeights(columns, rows, heights.data());
+    map->getSize(mapColumns, mapRows);
+    const bool fits =
+        column >= 0 && row >= 0 && columns > 0 && rows > 0 && long(column) + columns <= mapColumns && long(row) + rows <= mapRows;
+    if (fits && !isSmall) return;
+    fuzz::check(map->setHeights(column, row, columns, rows, heights.data()) == fits, "a rectangle in the map, or not");
+    fuzz::check(map->getHeights(column, row, columns, rows, heights.data()) == fits, "heights of what is not there");
+}
+
 /// One of the lines that begin with #.
 void perform(const std::string& line, SoSeparator* root) {
     std::istringstream words(line);
@@ -236,6 +257,12 @@ void perform(const std::string& line, SoSeparator* root) {
         moved->translation.setValue(3.0f, 1.0f, 0.5f);
         root->addChild(moved);
         for (int i = 0, count = root->getNumChildren(); i < count && i < 8; ++i) root->addChild(root->getChild(i));
+        return;
+    }
+    if (verb == "#heights") {
+        std::istringstream numbers(line.substr(verb.size()));
+        const auto maps = nodesOf(root, "SoHeightMap");
+        if (!maps.empty()) changeHeights(static_cast<SoHeightMap*>(maps.back()), numbers);
         return;
     }
     SoField* field = fieldOf(root, name);

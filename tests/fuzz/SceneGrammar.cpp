@@ -248,9 +248,15 @@ std::string SceneGrammar::fieldName(Random& random) const {
 }
 
 std::string SceneGrammar::note(Random& random) const {
-    switch (below(random, 6)) {
+    switch (below(random, 8)) {
     case 0:
         return "#view " + std::to_string(random());
+    case 3:
+    case 4: {
+        std::string text = "#heights";
+        for (int i = 0; i < 4; ++i) text += ' ' + (oneIn(random, 8) ? integer(random) : std::to_string(below(random, 18)));
+        return text + ' ' + std::to_string(random());
+    }
     case 1:
         return "#again";
     case 2:

@@ -11,8 +11,7 @@ namespace fuzz {
 
 /// A scene is a list of blocks between `Separator {` and `}`: a node each, with a line for each of its fields. Lines that begin
 /// with # are what FuzzScene does with it after the first frame: `#set CLASS.FIELD VALUE`, `#connect CLASS.FIELD CLASS.FIELD`,
-/// `#view NUMBER`,
-/// `#again`.
+/// `#view NUMBER`, `#heights COLUMN ROW COLUMNS ROWS SEED`, `#again`.
 class SceneGrammar {
 public:
     /// `files`: names that fields may hold. Coin and SoTerrain must have been initialised.
