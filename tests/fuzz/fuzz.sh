@@ -1,7 +1,7 @@
 #!/bin/bash
 # Usage: fuzz.sh SOURCE BUILD SECONDS FUZZER... Builds the fuzzers in BUILD/fuzz, for libFuzzer where there is a clang that has it, and runs
 # them for SECONDS in all. Ends with a line for each: runs, coverage, and `clean` or the file that makes it fail. Inputs that reach new
-# code stay in BUILD/fuzz/corpus and are begun with the next time.
+# code stay in BUILD/fuzz/corpus and are begun with the next time. FUZZ_CXX=clang++-16 takes that one, FUZZ_CXX=g++ does without libFuzzer.
 set -u
 source=$1 build=$2 seconds=$3
 shift 3
@@ -18,7 +18,7 @@ clang() {
     echo '#include <cstdint>
 #include <cstddef>
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t*, size_t) { return 0; }' >"$probe/probe.cpp"
-    for candidate in ${FUZZ_CXX-} clang++ clang++-{20..14}; do
+    for candidate in ${FUZZ_CXX-$(echo clang++ clang++-{20..14})}; do
         "$candidate" -fsanitize=fuzzer,address,undefined "$probe/probe.cpp" -o "$probe/probe" 2>/dev/null || continue
         echo "$candidate"
         return
