@@ -397,8 +397,9 @@ TEST(Kit, RefusesPartsOfWrongTypesWithAMessage) {
     SoReadError::setHandlerCallback([](const SoError*, void*) { ++readErrors; }, nullptr);
     Ref<SoTerrainKit> kit(new SoTerrainKit);
     for (const char* part : {"terrain", "heightMap", "texture", "color"}) {
+        const Ref<SoSphere> sphere(new SoSphere);
         Messages messages;
-        EXPECT_FALSE(kit->setPart(part, new SoSphere)) << part;
+        EXPECT_FALSE(kit->setPart(part, sphere.get())) << part;
         EXPECT_NE(messages.text().find("part " + std::string(part) + ": expected a"), std::string::npos)
             << part << ": " << messages.text();
         EXPECT_EQ(messages.all().size(), 1u) << messages.text();
