@@ -16,7 +16,8 @@ run() (
     mkdir -p "$folder" && cd "$folder" || exit 1
     if [ ! -f config.status ]; then
         # shellcheck disable=SC2086
-        "$source/configure" -q --enable-sanitizers="$list" CC="$CC" CXX="$CXX" ${SANITIZERS_CONFIGURE-} >configure.log 2>&1 ||
+        "$source/configure" -q --enable-sanitizers="$list" CC="$CC" CXX="$CXX" CXXFLAGS="-O1 -g1" ${SANITIZERS_CONFIGURE-} \
+            >configure.log 2>&1 ||
             { rm -f config.status; tail -n 5 configure.log; exit 1; }
     fi
     jobs=-j${SANITIZERS_JOBS-$(nproc)}
@@ -24,7 +25,7 @@ run() (
     find tests -name '*.trs' -delete
     start=$SECONDS
     # What is instrumented takes several times as long; -k: a program that fails must not keep the others from running.
-    make -k check TEST_TIMEOUT="${TEST_TIMEOUT-5400}" ${TESTS+TESTS="$TESTS"} >check.log 2>&1
+    make -k "$jobs" check TEST_TIMEOUT="${TEST_TIMEOUT-5400}" ${TESTS+TESTS="$TESTS"} >check.log 2>&1
     line=$(bash "$source/tests/totals.sh" tests) || failed=1
     echo "sanitizers $list: $line, in $(((SECONDS - start + 59) / 60)) minutes"
     while read -r result; do
