@@ -107,6 +107,30 @@ TEST_P(ClassDocs, ListTheFieldsInOrderWithTheirDefaults) {
     EXPECT_EQ(documented(GetParam()), actual(node.get()));
 }
 
+/// The part of docs/fields.md under this heading; empty where there is none.
+std::string table(const std::string& heading) {
+    const std::string text = read(sourceFolder() + "/docs/fields.md"), start = "\n## " + heading + "\n";
+    const std::size_t at = text.find(start);
+    return at == std::string::npos ? "" : text.substr(at, text.find("\n## ", at + 1) - at);
+}
+
+/// Readers look a field up in one place.
+TEST_P(ClassDocs, FieldsHaveAPlaceInTheTables) {
+    const SoType type = SoType::fromName(GetParam().c_str());
+    if (!type.canCreateInstance()) return;
+    const test::Ref<SoNode> node(static_cast<SoNode*>(type.createInstance()));
+    SoFieldList fields;
+    node->getFields(fields);
+    const bool isShape = type.isDerivedFrom(SoType::fromName("SoTerrainShape"));
+    const std::string listed = table(GetParam()) + (isShape ? table("Every terrain node") : "");
+    for (int i = 0; i < fields.getLength(); ++i) {
+        SbName name;
+        node->getFieldName(fields[i], name);
+        if (node->isOfType(SoBaseKit::getClassTypeId()) && (isPrivatePart(node.get(), name) || name == "callbackList")) continue;
+        EXPECT_NE(listed.find(std::string("`") + name.getString() + "`"), std::string::npos) << name.getString();
+    }
+}
+
 /// "Default 2." or the like stands in the text of each field that the class adds itself; so it can't say another number than the block.
 TEST_P(ClassDocs, NameTheDefaultOfEachFieldOfTheirOwn) {
     const std::string text = read(sourceFolder() + "/nodes/" + GetParam() + ".cpp");
