@@ -10,7 +10,6 @@
 #include <cstdio>
 
 #include <Inventor/Qt/SoQt.h>
-#include <Inventor/fields/SoSFBool.h>
 #include <Inventor/fields/SoSFFloat.h>
 #include <Inventor/nodes/SoSeparator.h>
 
@@ -83,8 +82,8 @@ void FlyArea::tick() {
         textMs_ = now;
         textDue_ = false;
         const std::string text = status();
-        statusLine_.setText(text);
-        setTitle(("SoTerrainTest: " + text).c_str());
+        if (showsStatus_) statusLine_.setText(text);
+        if (tellStatus_) tellStatus_(text);
     }
     if (!play_ && !textDue_ && now > activeUntilMs_) timer_.stop();
 }
@@ -192,6 +191,12 @@ void FlyArea::logFrame(double frameMs) {
     if (problem_) SoQt::exitMainLoop();
 }
 
+void FlyArea::showStatus(bool on) {
+    showsStatus_ = on;
+    statusLine_.setText(on ? status() : "");
+    wake();
+}
+
 std::string FlyArea::status() const {
     const FrameFigures figures = scene_.figures();
     char text[200];
@@ -205,8 +210,7 @@ std::string FlyArea::status() const {
                       wanted ? wanted->getValue() : 0.0f);
         line += text;
     }
-    const auto* culling = scene_.terrain() ? dynamic_cast<SoSFBool*>(scene_.terrain()->getField("frustumCulling")) : nullptr;
-    if (culling && !culling->getValue()) line += "   no culling";
+    if (hasField("frustumCulling") && !culling()) line += "   no culling";
     if (formerError_) line += "   full detail";
     if (camera_.constantHeight()) line += "   constant height";
     if (recording_) line += "   recording";

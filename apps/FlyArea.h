@@ -1,13 +1,13 @@
-// The render area of SoTerrainTest: keys, mouse, animation and status line.
+// The render area of SoTerrainTest: steering, animation and status.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <Inventor/Qt/SoQtRenderArea.h>
-#include <QRect>
 #include <QTimer>
 
 #include "FlyCamera.h"
@@ -26,7 +26,36 @@ class FlyArea : public SoQtRenderArea {
 public:
     FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& log, Animation animation, double loadMs);
 
-    void toggleFullScreen();
+    // What commands do; the caller wakes the area afterwards.
+    /// Raises (1) or lowers (-1) the pixel error by a step.
+    void scalePixelError(int direction);
+    void toggleCulling();
+    /// No error at all, or the former one again.
+    void toggleDetail();
+    /// More or fewer levels of a clipmap than there are now; as many as the view needs for 0.
+    void changeLevels(int by);
+    void toggleConstantHeight();
+    void goHome();
+    void toggleRecord();
+    void togglePlay();
+
+    bool hasField(const char* name) const;  ///< of the terrain node
+    bool culling() const;
+    bool fullDetail() const { return formerError_.has_value(); }
+    bool constantHeight() const { return camera_.constantHeight(); }
+    bool isRecording() const { return recording_.has_value(); }
+    bool isReplaying() const { return replayProfile_.has_value(); }
+    /// Whether the program ends with its animation: then nothing may disturb it.
+    bool endsByItself() const { return ends_; }
+
+    /// Draws and follows the scene again, after something has changed.
+    void wake();
+    /// Gives the keyboard to this area.
+    void takeFocus();
+    /// Who is told of every new status text.
+    void onStatus(std::function<void(const std::string&)> tell) { tellStatus_ = std::move(tell); }
+    /// Writes the status over the picture too, or does not.
+    void showStatus(bool on);
     /// What ended the main loop, if it was not the user or the end of the animation.
     const std::optional<terrain::Error>& problem() const { return problem_; }
     /// Of the GL context; empty before the first frame.
@@ -46,18 +75,11 @@ private:
 
     void tick();
     void advance(double now);
-    void wake();
     void runTimer();
     void noteScene();
     void play(Animation animation);
     void endOfAnimation();
     bool steer(const QKeyEvent& event, bool press);
-    bool command(const QKeyEvent& event);
-    void scalePixelError(float factor);
-    void changeLevels(int by);
-    void toggleDetail();
-    void toggleRecord();
-    void togglePlay();
     void endReplay(const char* how);
     void takeOver();
     bool mouse(const QMouseEvent& event);
@@ -94,7 +116,8 @@ private:
     std::optional<ProfileWriter> replayProfile_;  ///< while P replays
     std::string message_;
     std::optional<std::pair<int, int>> drag_;
-    QRect windowed_;  ///< geometry outside full screen
+    std::function<void(const std::string&)> tellStatus_;
+    bool showsStatus_ = false;  ///< over the picture
     std::optional<terrain::Error> problem_;
     std::string renderer_;
 };

@@ -1,4 +1,4 @@
-// Keys and mouse of the render area.
+// Keys that are held, mouse and commands of the render area.
 #ifdef HAVE_CONFIG_H
 #include "config.h"
 #endif
@@ -9,13 +9,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include <Inventor/Qt/SoQt.h>
 #include <Inventor/fields/SoSFBool.h>
 #include <Inventor/fields/SoSFFloat.h>
 #include <Inventor/fields/SoSFInt32.h>
 #include <QKeyEvent>
 #include <QMouseEvent>
-#include <QScreen>
 #include <QWheelEvent>
 #include <QWidget>
 
@@ -52,9 +50,7 @@ void FlyArea::processEvent(QEvent* event) {
     case QEvent::KeyPress:
     case QEvent::KeyRelease: {
         const auto& key = static_cast<const QKeyEvent&>(*event);
-        const bool press = event->type() == QEvent::KeyPress;
-        if (key.isAutoRepeat() && !(press && (key.key() == Qt::Key_Plus || key.key() == Qt::Key_Minus))) return;
-        if (steer(key, press) || (press && command(key))) return;
+        if (key.isAutoRepeat() || steer(key, event->type() == QEvent::KeyPress)) return;
         break;
     }
     case QEvent::FocusOut:
@@ -85,80 +81,43 @@ bool FlyArea::steer(const QKeyEvent& event, bool press) {
     return true;
 }
 
-bool FlyArea::command(const QKeyEvent& event) {
-    switch (event.key()) {
-    case Qt::Key_Plus:
-        scalePixelError(errorStep);
-        break;
-    case Qt::Key_Minus:
-        scalePixelError(1.0f / errorStep);
-        break;
-    case Qt::Key_F:
-        if (auto* culling = scene_.terrain() ? dynamic_cast<SoSFBool*>(scene_.terrain()->getField("frustumCulling")) : nullptr) {
-            culling->setValue(!culling->getValue());
-        }
-        break;
-    case Qt::Key_L:
-        scene_.setWireframe(!scene_.wireframe());
-        break;
-    case Qt::Key_Return:
-    case Qt::Key_Enter:
-        if (event.modifiers() & Qt::AltModifier)
-            toggleFullScreen();
-        else
-            toggleDetail();
-        break;
-    case Qt::Key_Space:
-        camera_.setConstantHeight(!camera_.constantHeight());
-        break;
-    case Qt::Key_Tab:
-        takeOver();
-        camera_.setPose(scene_.home());
-        scene_.setPose(scene_.home());
-        break;
-    case Qt::Key_R:
-        toggleRecord();
-        break;
-    case Qt::Key_P:
-        togglePlay();
-        break;
-    case Qt::Key_BracketRight:
-        changeLevels(1);
-        break;
-    case Qt::Key_BracketLeft:
-        changeLevels(-1);
-        break;
-    case Qt::Key_0:
-        changeLevels(0);
-        break;
-    case Qt::Key_Escape:
-        SoQt::exitMainLoop();
-        break;
-    default:
-        return false;
-    }
-    wake();
-    return true;
+void FlyArea::takeFocus() {
+    getGLWidget()->setFocusPolicy(Qt::StrongFocus);
+    getGLWidget()->setFocus();
 }
 
-// The geometry is set too, for displays without a window manager that would do it.
-void FlyArea::toggleFullScreen() {
-    QWidget* shell = getWidget()->window();
-    const bool full = shell->windowState() & Qt::WindowFullScreen;
-    if (!full) windowed_ = shell->geometry();
-    shell->setWindowState(shell->windowState() ^ Qt::WindowFullScreen);
-    shell->setGeometry(full ? windowed_ : shell->screen()->geometry());
+bool FlyArea::hasField(const char* name) const {
+    return scene_.terrain() && scene_.terrain()->getField(name);
 }
 
-void FlyArea::scalePixelError(float factor) {
+bool FlyArea::culling() const {
+    const auto* field = scene_.terrain() ? dynamic_cast<SoSFBool*>(scene_.terrain()->getField("frustumCulling")) : nullptr;
+    return field && field->getValue();
+}
+
+void FlyArea::toggleCulling() {
+    auto* field = scene_.terrain() ? dynamic_cast<SoSFBool*>(scene_.terrain()->getField("frustumCulling")) : nullptr;
+    if (field) field->setValue(!field->getValue());
+}
+
+void FlyArea::toggleConstantHeight() {
+    camera_.setConstantHeight(!camera_.constantHeight());
+}
+
+void FlyArea::goHome() {
+    takeOver();
+    camera_.setPose(scene_.home());
+    scene_.setPose(scene_.home());
+}
+
+void FlyArea::scalePixelError(int direction) {
     auto* field = scene_.terrain() ? dynamic_cast<SoSFFloat*>(scene_.terrain()->getField("pixelError")) : nullptr;
     if (!field) return;
     const float before = formerError_.value_or(field->getValue());
     formerError_.reset();
-    field->setValue(std::clamp(std::max(before, 0.1f) * factor, 0.1f, 100.0f));
+    field->setValue(std::clamp(std::max(before, 0.1f) * (direction > 0 ? errorStep : 1.0f / errorStep), 0.1f, 100.0f));
 }
 
-/// More or fewer levels of a clipmap than there are now; as many as the view needs for 0.
 void FlyArea::changeLevels(int by) {
     auto* shape = dynamic_cast<SoTerrainShape*>(scene_.terrain());
     auto* field = shape ? dynamic_cast<SoSFInt32*>(shape->getField("activeLevels")) : nullptr;

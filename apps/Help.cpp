@@ -53,12 +53,12 @@ Output
   -f, --full-screen         start with a full screen
       --help, --version
 
-Keys
+Keys (the window's menus offer the same, and more)
   W S forward, back   A D left, right   Q E up, down   arrows turn   PgUp PgDn roll   mouse drag looks around   wheel: speed
   Keypad + -  pixel error         F  frustum culling      L  wireframe         Space  constant height over the ground
   Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
   ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
-  Left Alt+Enter  full screen     Esc  quit
+  Left Alt+Enter, F11  full screen                        Esc  quit             F1  all keys
 
 R writes the flight to soterrain-flight.csv, P the profile of its replay, as -p does, to soterrain-replay.csv.
 

@@ -11,10 +11,9 @@
 
 #include <Inventor/Qt/SoQt.h>
 #include <QSurfaceFormat>
-#include <QWidget>
 
 #include "Clock.h"
-#include "FlyArea.h"
+#include "MainWindow.h"
 #include "RunLog.h"
 
 namespace app {
@@ -57,15 +56,11 @@ std::optional<Error> runWindow(const Options& options, Scene& scene, double star
     if (!animation) return animation.error();
     auto log = RunLog::open(options, scene);
     if (!log) return log.error();
-    QWidget* top = SoQt::getTopLevelWidget();
-    FlyArea area(top, options, scene, log.value(), animation.value(), nowMs() - startedMs);
-    top->resize(1024, 768);
-    area.setTitle("SoTerrainTest");
-    area.setWindowCloseCallback([](void*, SoQtComponent*) { SoQt::exitMainLoop(); });
-    area.show();
-    SoQt::show(top);
-    if (options.fullScreen) area.toggleFullScreen();
+    MainWindow window(options, scene, log.value(), animation.value(), nowMs() - startedMs);
+    SoQt::show(&window);
+    if (options.fullScreen) window.toggleFullScreen();
     SoQt::mainLoop();
+    const FlyArea& area = window.area();
     if (area.problem()) return area.problem();
     return log.value().finish(options, scene, area.renderer());
 }

@@ -1,0 +1,80 @@
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#ifdef HAVE_SOQT
+
+#include "Commands.h"
+
+#include "FlyArea.h"
+#include "MainWindow.h"
+
+namespace app {
+
+namespace {
+
+Command line(Menu menu) {
+    return {"", menu, "", "", "", nullptr};
+}
+
+// Possible where the terrain node has this field.
+Command::Ask has(const char* field) {
+    return [field](const MainWindow& window) { return window.area().hasField(field); };
+}
+
+// A new command is one row here: its menu entry, its key and its line in Help > Keys follow from it. What it does belongs into
+// FlyArea (what is seen), Scene (what is drawn) or MainWindow (dialogs), or a file of its own; the row calls it. Afterwards the
+// picture, the menus' check marks and the status bar are brought up to date by MainWindow::run(). Then tell of the key in Help.cpp
+// and man/SoTerrainTest.1. Keys that are held to steer (W A S D Q E, arrows, PgUp, PgDn) are FlyArea's and can't be used here.
+std::vector<Command> makeCommands() {
+    using W = MainWindow;
+    return {
+        {"quit", Menu::File, "&Quit", "Esc Ctrl+Q", "Leave the program", [](W& w) { w.close(); }},
+
+        {"full-screen", Menu::View, "&Full screen", "Alt+Return Alt+Enter F11", "Use the whole screen, without menus",
+         [](W& w) { w.toggleFullScreen(); }, [](const W& w) { return w.isFullScreen(); }},
+        line(Menu::View),
+        {"wireframe", Menu::View, "&Wireframe", "L", "Show the edges of the triangles alone",
+         [](W& w) { w.scene().setWireframe(!w.scene().wireframe()); }, [](const W& w) { return w.scene().wireframe(); }},
+        line(Menu::View),
+        {"home", Menu::View, "Camera &home", "Tab", "Put the camera where it was at the start", [](W& w) { w.area().goHome(); }},
+        {"constant-height", Menu::View, "&Constant height", "Space", "Keep the height over the ground",
+         [](W& w) { w.area().toggleConstantHeight(); }, [](const W& w) { return w.area().constantHeight(); }},
+
+        {"coarser", Menu::Terrain, "&Greater pixel error", "+", "Allow a greater error on screen: fewer triangles",
+         [](W& w) { w.area().scalePixelError(1); }, nullptr, has("pixelError"), false, true},
+        {"finer", Menu::Terrain, "&Smaller pixel error", "-", "Ask for a smaller error on screen: more triangles",
+         [](W& w) { w.area().scalePixelError(-1); }, nullptr, has("pixelError"), false, true},
+        {"full-detail", Menu::Terrain, "Full &detail", "Return Enter", "Draw without any error, or with the former one again",
+         [](W& w) { w.area().toggleDetail(); }, [](const W& w) { return w.area().fullDetail(); }, has("pixelError")},
+        {"culling", Menu::Terrain, "Frustum &culling", "F", "Leave out what is not in view", [](W& w) { w.area().toggleCulling(); },
+         [](const W& w) { return w.area().culling(); }, has("frustumCulling")},
+        line(Menu::Terrain),
+        {"more-levels", Menu::Terrain, "One level &finer", "]", "One level more of a clipmap",
+         [](W& w) { w.area().changeLevels(1); }, nullptr, has("activeLevels")},
+        {"fewer-levels", Menu::Terrain, "One level c&oarser", "[", "One level less of a clipmap",
+         [](W& w) { w.area().changeLevels(-1); }, nullptr, has("activeLevels")},
+        {"all-levels", Menu::Terrain, "&All levels", "0", "As many levels of a clipmap as the view needs",
+         [](W& w) { w.area().changeLevels(0); }, nullptr, has("activeLevels")},
+
+        {"record", Menu::Benchmark, "&Record flight", "R", "Record the camera to soterrain-flight.csv, until R is pressed again",
+         [](W& w) { w.area().toggleRecord(); }, [](const W& w) { return w.area().isRecording(); }},
+        {"play", Menu::Benchmark, "&Play record", "P", "Play the record, with a profile in soterrain-replay.csv",
+         [](W& w) { w.area().togglePlay(); }, [](const W& w) { return w.area().isReplaying(); },
+         [](const W& w) { return !w.area().endsByItself(); }},
+
+        {"keys", Menu::Help, "&Keys", "F1", "Show what the keys do", [](W& w) { w.showKeys(); }},
+        {"about", Menu::Help, "&About SoTerrainTest", "", "Versions and graphics", [](W& w) { w.showAbout(); }},
+    };
+}
+
+}  // namespace
+
+const std::vector<Command>& commands() {
+    static const std::vector<Command> table = makeCommands();
+    return table;
+}
+
+}  // namespace app
+
+#endif

@@ -1,0 +1,153 @@
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#ifdef HAVE_SOQT
+
+#include "MainWindow.h"
+
+#include <Inventor/Qt/SoQt.h>
+#include <QAction>
+#include <QActionGroup>
+#include <QCloseEvent>
+#include <QLabel>
+#include <QMenu>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QScreen>
+#include <QStatusBar>
+
+#include "HelpDialogs.h"
+
+namespace app {
+
+namespace {
+
+constexpr int messageMs = 6000;
+const QSize pictureSize(1024, 768);
+
+QList<QKeySequence> keySequences(const std::string& keys) {
+    QList<QKeySequence> sequences;
+    for (const QString& key : QString::fromStdString(keys).split(' ', Qt::SkipEmptyParts)) sequences.append(QKeySequence(key));
+    return sequences;
+}
+
+}  // namespace
+
+MainWindow::MainWindow(const Options& options, Scene& scene, RunLog& log, Animation animation, double loadMs)
+    : options_(options), scene_(scene), status_(new QLabel) {
+    setWindowTitle("SoTerrainTest");
+    auto* middle = new QWidget(this);
+    middle->setMinimumSize(160, 120);
+    setCentralWidget(middle);
+    statusBar()->addWidget(status_, 1);
+    status_->setIndent(6);
+    area_ = std::make_unique<FlyArea>(middle, options_, scene_, log, std::move(animation), loadMs);
+    area_->onStatus([this](const std::string& text) { setStatus(text); });
+    addMenus();
+    fitToScreen();
+    area_->show();
+    area_->takeFocus();
+}
+
+MainWindow::~MainWindow() = default;
+
+// A picture of the size that --offscreen has too, where the screen has room for it and what is around it.
+void MainWindow::fitToScreen() {
+    const QSize around(0, menuBar()->sizeHint().height() + statusBar()->sizeHint().height());
+    resize((pictureSize + around).boundedTo(screen()->availableGeometry().size()));
+}
+
+void MainWindow::addMenus() {
+    std::vector<QMenu*> menus;
+    for (const char* title : menuTitles) {
+        menus.push_back(menuBar()->addMenu(title));
+        connect(menus.back(), &QMenu::aboutToShow, this, [this] { refresh(); });
+    }
+    std::vector<QActionGroup*> groups(menus.size(), nullptr);
+    for (const Command& command : commands()) {
+        const auto index = std::size_t(command.menu);
+        if (command.id.empty()) {
+            menus[index]->addSeparator();
+            continue;
+        }
+        QAction* action = addCommand(command);
+        menus[index]->addAction(action);
+        if (!command.isChoice) continue;
+        if (!groups[index]) groups[index] = new QActionGroup(this);
+        groups[index]->addAction(action);
+    }
+    for (QMenu* menu : menus) menu->menuAction()->setVisible(!menu->isEmpty());
+    refresh();
+}
+
+// The window has the action itself too: its keys work without the menu bar.
+QAction* MainWindow::addCommand(const Command& command) {
+    auto* action = new QAction(QString::fromStdString(command.text), this);
+    action->setObjectName(QString::fromStdString(command.id));
+    action->setStatusTip(QString::fromStdString(command.help));
+    action->setShortcuts(keySequences(command.keys));
+    action->setAutoRepeat(command.repeats);
+    action->setCheckable(bool(command.isOn));
+    action->setMenuRole(QAction::NoRole);
+    connect(action, &QAction::triggered, this, [this, &command] { run(command); });
+    addAction(action);
+    entries_.push_back({&command, action});
+    return action;
+}
+
+void MainWindow::run(const Command& command) {
+    if (command.isPossible && !command.isPossible(*this)) return;
+    command.run(*this);
+    refresh();
+    area_->wake();
+}
+
+void MainWindow::refresh() {
+    for (const Entry& entry : entries_) {
+        if (entry.command->isPossible) entry.action->setEnabled(entry.command->isPossible(*this));
+        if (entry.command->isOn) entry.action->setChecked(entry.command->isOn(*this));
+    }
+}
+
+void MainWindow::setStatus(const std::string& text) {
+    setWindowTitle(QString::fromStdString("SoTerrainTest: " + text));
+    status_->setText(QString::fromStdString(text));
+    refresh();
+}
+
+void MainWindow::say(const std::string& message) {
+    statusBar()->showMessage(QString::fromStdString(message), messageMs);
+}
+
+// The geometry is set too, for displays without a window manager that would do it.
+void MainWindow::toggleFullScreen() {
+    const bool full = isFullScreen();
+    if (!full) windowed_ = geometry();
+    menuBar()->setVisible(full);
+    statusBar()->setVisible(full);
+    area_->showStatus(!full);
+    setWindowState(windowState() ^ Qt::WindowFullScreen);
+    setGeometry(full ? windowed_ : screen()->geometry());
+    area_->takeFocus();
+}
+
+void MainWindow::showKeys() {
+    if (!keys_) keys_ = makeKeysDialog(this);
+    keys_->show();
+    keys_->raise();
+    keys_->activateWindow();
+}
+
+void MainWindow::showAbout() {
+    QMessageBox::about(this, "About SoTerrainTest", aboutText(area_->renderer()));
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+    event->accept();
+    SoQt::exitMainLoop();
+}
+
+}  // namespace app
+
+#endif
