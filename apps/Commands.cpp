@@ -29,6 +29,13 @@ Command::Ask has(const char* field) {
 std::vector<Command> makeCommands() {
     using W = MainWindow;
     return {
+        {"open", Menu::File, "&Open...", "Ctrl+O", "Open a height map or a scene", [](W& w) { w.chooseFiles(); }, nullptr,
+         [](const W& w) { return w.canOpen(); }},
+        {"open-texture", Menu::File, "Open &texture...", "Ctrl+T", "Lay a picture over the height map",
+         [](W& w) { w.chooseTexture(); }, nullptr, [](const W& w) { return w.canTexture(); }},
+        {"no-texture", Menu::File, "&No texture", "", "Show the height map without a picture", [](W& w) { w.setTexture(""); },
+         nullptr, [](const W& w) { return w.canTexture() && !w.options().texture.empty(); }},
+        line(Menu::File),
         {"quit", Menu::File, "&Quit", "Esc Ctrl+Q", "Leave the program", [](W& w) { w.close(); }},
 
         {"full-screen", Menu::View, "&Full screen", "Alt+Return Alt+Enter F11", "Use the whole screen, without menus",

@@ -33,9 +33,8 @@ double smooth(double old, double value) {
 
 FlyArea::FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& log, Animation animation, double loadMs)
     : SoQtRenderArea(parent, "SoTerrainTest", TRUE), options_(options), scene_(scene), log_(log), animation_(std::move(animation)),
-      loadMs_(loadMs), camera_([&scene](const SbVec3f& point) { return scene.groundHeight(point); }, scene.size()),
-      startMs_(nowMs()), lastTickMs_(startMs_) {
-    ends_ = options.frames || !options.profile.empty() || options.stats || options.measureError || !options.record.empty();
+      loadMs_(loadMs), camera_(makeCamera()), startMs_(nowMs()), lastTickMs_(startMs_) {
+    ends_ = options.isMeasured();
     logging_ = ends_;
     camera_.setPose(scene.home());
     auto* all = new SoSeparator;
@@ -46,6 +45,28 @@ FlyArea::FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& 
     setSceneGraph(all);
     QObject::connect(&timer_, &QTimer::timeout, [this] { tick(); });
     if (options.animate || options.frames || !options.flight.empty()) play(animation_);
+    wake();
+}
+
+FlyCamera FlyArea::makeCamera() {
+    return FlyCamera([this](const SbVec3f& point) { return scene_.groundHeight(point); }, scene_.size());
+}
+
+void FlyArea::sceneChanged(bool keepCamera) {
+    static_cast<SoSeparator*>(getSceneGraph())->replaceChild(0, scene_.root());
+    const Pose pose = keepCamera ? camera_.pose() : scene_.home();
+    camera_ = makeCamera();
+    if (!keepCamera) {
+        endReplay("stopped");
+        play_.reset();
+        formerError_.reset();
+    }
+    if (!play_) {
+        camera_.setPose(pose);
+        scene_.setPose(pose);
+    }
+    drawnScene_ = 0;
+    textMs_ = 0.0;
     wake();
 }
 
@@ -198,6 +219,7 @@ void FlyArea::showStatus(bool on) {
 }
 
 std::string FlyArea::status() const {
+    if (scene_.algorithm().empty()) return message_.empty() ? "no terrain" : message_;
     const FrameFigures figures = scene_.figures();
     char text[200];
     const double ms = intervalMs_ > 0.0 ? std::max(intervalMs_, frameMs_) : frameMs_;

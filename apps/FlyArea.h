@@ -48,6 +48,8 @@ public:
     /// Whether the program ends with its animation: then nothing may disturb it.
     bool endsByItself() const { return ends_; }
 
+    /// The scene has been replaced. Unless the camera is kept, it goes to the new scene's home.
+    void sceneChanged(bool keepCamera);
     /// Draws and follows the scene again, after something has changed.
     void wake();
     /// Gives the keyboard to this area.
@@ -79,6 +81,7 @@ private:
     void noteScene();
     void play(Animation animation);
     void endOfAnimation();
+    FlyCamera makeCamera();
     bool steer(const QKeyEvent& event, bool press);
     void endReplay(const char* how);
     void takeOver();

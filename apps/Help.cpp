@@ -51,6 +51,8 @@ Output
                             -p, --stats, --measure-error and --output it prints one line of figures
       --output NAME         write the frames of --offscreen: frame-%04d.png. They wait for tiles, and so do those of --measure-error
   -f, --full-screen         start with a full screen
+      --no-settings         neither use nor keep what the window remembers: its place, recent files. A run that is measured
+                            (--frames, -p, --stats, --record, --measure-error) never does
       --help, --version
 
 Keys (the window's menus offer the same, and more)
@@ -59,6 +61,9 @@ Keys (the window's menus offer the same, and more)
   Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
   ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
   Left Alt+Enter, F11  full screen                        Esc  quit             F1  all keys
+  Ctrl+O  open a terrain          Ctrl+T  open a texture
+
+Without -h and --scene the window shows the installed terrain, or waits for a file: File > Open, or one that is dropped on it.
 
 R writes the flight to soterrain-flight.csv, P the profile of its replay, as -p does, to soterrain-replay.csv.
 

@@ -72,6 +72,12 @@ Result<Image> readImage(const std::string& path) {
     return image;
 }
 
+int channelCount(const std::string& path) {
+    const auto input = OIIO::ImageInput::open(path);
+    if (!input) OIIO::geterror();  // or it is complained about at the end
+    return input ? input->spec().nchannels : 0;
+}
+
 std::optional<Error> writeImage(const std::string& path, const Image& image) {
     if (path.ends_with(".ppm")) return writePpm(path, image);
     const auto output = OIIO::ImageOutput::create(path);
@@ -86,6 +92,11 @@ std::optional<Error> writeImage(const std::string& path, const Image& image) {
 
 Result<Image> readImage(const std::string& path) {
     return readPnm(path);
+}
+
+int channelCount(const std::string& path) {
+    const auto read = readPnm(path);
+    return read ? read.value().channels : 0;
 }
 
 std::optional<Error> writeImage(const std::string& path, const Image& image) {

@@ -12,6 +12,8 @@ namespace app {
 /// Reads a picture of 1 to 4 channels, 8 bits each afterwards, rows from top to bottom. Without OpenImageIO only binary PPM and
 /// PGM.
 terrain::Result<terrain::Image> readImage(const std::string& path);
+/// Channels of a picture; 0 when it can't be read.
+int channelCount(const std::string& path);
 /// Writes a picture in the format that the name ends in. Without OpenImageIO only ".ppm". Returns what went wrong, if anything did.
 std::optional<terrain::Error> writeImage(const std::string& path, const terrain::Image& image);
 

@@ -35,8 +35,10 @@ QList<QKeySequence> keySequences(const std::string& keys) {
 }  // namespace
 
 MainWindow::MainWindow(const Options& options, Scene& scene, RunLog& log, Animation animation, double loadMs)
-    : options_(options), scene_(scene), status_(new QLabel) {
+    : options_(options), settings_(!options.isMeasured() && !options.noSettings), scene_(scene), status_(new QLabel),
+      recent_(new QMenu("Open &recent", this)) {
     setWindowTitle("SoTerrainTest");
+    setAcceptDrops(true);
     auto* middle = new QWidget(this);
     middle->setMinimumSize(160, 120);
     setCentralWidget(middle);
@@ -45,15 +47,20 @@ MainWindow::MainWindow(const Options& options, Scene& scene, RunLog& log, Animat
     area_ = std::make_unique<FlyArea>(middle, options_, scene_, log, std::move(animation), loadMs);
     area_->onStatus([this](const std::string& text) { setStatus(text); });
     addMenus();
-    fitToScreen();
+    noteFile();
+    fillRecentFiles();
+    placeWindow();
     area_->show();
     area_->takeFocus();
 }
 
 MainWindow::~MainWindow() = default;
 
-// A picture of the size that --offscreen has too, where the screen has room for it and what is around it.
-void MainWindow::fitToScreen() {
+// Where it was the last time; else with a picture of the size that --offscreen has too, where the screen has room for it and what
+// is around it.
+void MainWindow::placeWindow() {
+    const QByteArray geometry = settings_.windowGeometry();
+    if (!geometry.isEmpty() && restoreGeometry(geometry)) return;
     const QSize around(0, menuBar()->sizeHint().height() + statusBar()->sizeHint().height());
     resize((pictureSize + around).boundedTo(screen()->availableGeometry().size()));
 }
@@ -73,6 +80,7 @@ void MainWindow::addMenus() {
         }
         QAction* action = addCommand(command);
         menus[index]->addAction(action);
+        if (command.id == "open") menus[index]->addMenu(recent_);
         if (!command.isChoice) continue;
         if (!groups[index]) groups[index] = new QActionGroup(this);
         groups[index]->addAction(action);
@@ -111,7 +119,7 @@ void MainWindow::refresh() {
 }
 
 void MainWindow::setStatus(const std::string& text) {
-    setWindowTitle(QString::fromStdString("SoTerrainTest: " + text));
+    setWindowTitle(QString::fromLocal8Bit(("SoTerrainTest: " + text + (fileName_.empty() ? "" : "   " + fileName_)).c_str()));
     status_->setText(QString::fromStdString(text));
     refresh();
 }
@@ -144,6 +152,7 @@ void MainWindow::showAbout() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+    if (!isFullScreen()) settings_.setWindowGeometry(saveGeometry());
     event->accept();
     SoQt::exitMainLoop();
 }

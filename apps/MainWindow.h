@@ -12,10 +12,12 @@
 #include "Options.h"
 #include "RunLog.h"
 #include "Scene.h"
+#include "Settings.h"
 
 class QAction;
 class QDialog;
 class QLabel;
+class QMenu;
 
 namespace app {
 
@@ -32,14 +34,26 @@ public:
 
     /// Does what a command says, and brings menus, status and picture up to date.
     void run(const Command& command);
+    /// Shows other files: a height map or a scene, and with it, or for the present map, a picture as texture. What can't be read
+    /// leaves the present scene and is told.
+    void openFiles(const std::vector<std::string>& paths);
+    void chooseFiles();
+    void chooseTexture();
+    void setTexture(const std::string& path);  ///< empty: none
+    bool canOpen() const;
+    bool canTexture() const;
     /// A message in the status bar, for some seconds.
     void say(const std::string& message);
     void toggleFullScreen();
     void showKeys();
     void showAbout();
 
+    const Options& options() const { return options_; }
+
 protected:
     void closeEvent(QCloseEvent* event) override;
+    void dragEnterEvent(QDragEnterEvent* event) override;
+    void dropEvent(QDropEvent* event) override;
 
 private:
     struct Entry {
@@ -51,14 +65,23 @@ private:
     QAction* addCommand(const Command& command);
     void refresh();
     void setStatus(const std::string& text);
-    void fitToScreen();
+    void placeWindow();
+    void fail(const terrain::Error& problem);
+    bool showScene(const Options& next, bool keepCamera);
+    void openRecent(const RecentFile& file);
+    void noteFile();
+    void fillRecentFiles();
+    QString folder() const;
 
-    Options options_;
+    Options options_;  ///< what is shown, and how
+    Settings settings_;
     Scene& scene_;
     std::unique_ptr<FlyArea> area_;
     std::vector<Entry> entries_;
     QLabel* status_;
+    QMenu* recent_;
     QDialog* keys_ = nullptr;
+    std::string fileName_;
     QRect windowed_;  ///< geometry outside full screen
 };
 

@@ -34,6 +34,7 @@ enum LongOption {
     RawSamples,
     MeasureError,
     Stats,
+    NoSettings,
     Help,
     Version
 };
@@ -68,6 +69,7 @@ const option longOptions[] = {
     {"raw-type", required_argument, nullptr, RawSamples},
     {"measure-error", required_argument, nullptr, MeasureError},
     {"stats", no_argument, nullptr, Stats},
+    {"no-settings", no_argument, nullptr, NoSettings},
     {"help", no_argument, nullptr, Help},
     {"version", no_argument, nullptr, Version},
     {nullptr, 0, nullptr, 0},
@@ -110,7 +112,7 @@ std::optional<glm::ivec2> readSize(std::string_view text, int lowest, int highes
 }
 
 constexpr struct {
-    std::string_view name;
+    const char* name;
     terrain::RawType type;
 } rawTypes[] = {
     {"uint8", terrain::RawType::UInt8},
@@ -201,6 +203,9 @@ void Reader::takeFlag(int code) {
         break;
     case Stats:
         options.stats = true;
+        break;
+    case NoSettings:
+        options.noSettings = true;
         break;
     case Help:
         options.help = true;
@@ -315,12 +320,10 @@ void Reader::takeSize(int code, const char* value) {
 }
 
 void Reader::takeRawType(const char* value) {
+    options.rawType = findRawType(value);
+    if (options.rawType) return;
     std::string known;
-    for (const auto& raw : rawTypes) {
-        if (raw.name == value) options.rawType = raw.type;
-        known += (known.empty() ? "" : ", ") + std::string(raw.name);
-        if (raw.name == value) return;
-    }
+    for (const auto& raw : rawTypes) known += (known.empty() ? "" : ", ") + std::string(raw.name);
     refuse("--raw-type", "one of " + known, std::string("\"") + value + "\"");
 }
 
@@ -339,7 +342,8 @@ void refuseOption(Reader& reader, int code, char* const argv[]) {
 
 void checkCombination(Reader& reader) {
     const Options& o = reader.options;
-    if (o.heightMap.empty() && o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "neither");
+    if (!o.namesTerrain() && (o.offscreen || o.isMeasured() || !o.output.empty()) && !reader.problem)
+        reader.problem = missingTerrain();
     if (!o.heightMap.empty() && !o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "both");
     if (!o.scene.empty() && (o.spacing || o.heightScale)) reader.refuse("--spacing, --height-scale", "-h heightmap", "--scene");
     if (!o.scene.empty() && (o.channel || o.rawSize || o.rawType)) {
@@ -358,6 +362,24 @@ void checkCombination(Reader& reader) {
 }
 
 }  // namespace
+
+const char* rawTypeName(terrain::RawType type) {
+    for (const auto& raw : rawTypes) {
+        if (raw.type == type) return raw.name;
+    }
+    return "";
+}
+
+std::optional<terrain::RawType> findRawType(std::string_view name) {
+    for (const auto& raw : rawTypes) {
+        if (raw.name == name) return raw.type;
+    }
+    return std::nullopt;
+}
+
+Error missingTerrain() {
+    return {"terrain", "-h heightmap or --scene file.iv", "neither"};
+}
 
 Result<Options> parseOptions(int argc, char* const argv[]) {
     Reader reader;
@@ -380,6 +402,7 @@ std::string usage() {
     return "Usage: SoTerrainTest -h heightmap [-t texture] [-p profile_file] [-a algorithm] [-A animation_time]\n"
            "         [-F frame_time] [-e pixel_error] [-r triangle_count] [-g tile_size] [-f] [-c] [-v] [-s] [long options]\n"
            "       SoTerrainTest --scene file.iv [options]\n"
+           "       SoTerrainTest [window options]\n"
            "       SoTerrainTest --help | --version\n";
 }
 

@@ -42,14 +42,28 @@ struct Options {
     bool animate = false;                     ///< -v
     bool synchronize = false;                 ///< -s
     bool stats = false;                       ///< --stats
+    bool noSettings = false;                  ///< --no-settings
     bool help = false;
     bool version = false;
+
+    /// Whether there is something to show.
+    bool namesTerrain() const { return !heightMap.empty() || !scene.empty(); }
+    /// Whether the run is measured, and ends by itself: then nothing but the command line may have a say.
+    bool isMeasured() const { return frames || !profile.empty() || stats || measureError || !record.empty(); }
 
     static constexpr double defaultAnimationTime = 10000.0;
     static constexpr double defaultFrameTime = 40.0;
 };
 
-/// Reads a command line as main() gets it. Error: an unknown option, a missing or bad value, options that contradict each other.
+/// As --raw-type names it.
+const char* rawTypeName(terrain::RawType type);
+/// Nothing when no type has this name.
+std::optional<terrain::RawType> findRawType(std::string_view name);
+
+/// What is wrong where a terrain is needed and none is named.
+terrain::Error missingTerrain();
+/// Reads a command line as main() gets it. Error: an unknown option, a missing or bad value, options that contradict each other; no
+/// terrain, where it can't be chosen in a window.
 terrain::Result<Options> parseOptions(int argc, char* const argv[]);
 /// One paragraph of options, for errors.
 std::string usage();

@@ -11,6 +11,8 @@
 #include <Inventor/nodes/SoQuadMesh.h>
 #include <SoTerrain/SoTerrainShape.h>
 
+#include "Texture.h"
+
 namespace app {
 
 namespace {
@@ -126,6 +128,23 @@ terrain::Result<std::unique_ptr<ErrorMeter>> Scene::makeErrorMeter() {
     if (!grid_) return terrain::Error{"--measure-error", "a terrain over an SoHeightMap", "none"};
     SoNode* parent = terrainPath_->getNodeFromTail(1);
     return std::make_unique<ErrorMeter>(*grid_, static_cast<SoGroup*>(parent), terrain_);
+}
+
+// White under a texture, which the light then shows in its own colours; the colour of earth without one.
+std::optional<terrain::Error> Scene::setTexture(const std::string& path) {
+    NodePtr<SoTexture2> texture;
+    if (!path.empty()) {
+        auto loaded = loadTexture(path);
+        if (!loaded) return loaded.error();
+        texture = NodePtr(loaded.value());
+    }
+    if (texture_) root_->removeChild(texture_.get());
+    if (texture) root_->insertChild(texture.get(), root_->findChild(material_) + 1);
+    texture_ = texture;
+    const SbColor color = texture_ ? SbColor(1.0f, 1.0f, 1.0f) : SbColor(0.62f, 0.57f, 0.47f);
+    material_->diffuseColor = color;
+    material_->ambientColor = color * 0.4f;
+    return std::nullopt;
 }
 
 void Scene::setWireframe(bool on) {

@@ -9,7 +9,9 @@
 #include <Inventor/SoPath.h>
 #include <Inventor/nodes/SoCamera.h>
 #include <Inventor/nodes/SoDrawStyle.h>
+#include <Inventor/nodes/SoMaterial.h>
 #include <Inventor/nodes/SoSeparator.h>
+#include <Inventor/nodes/SoTexture2.h>
 
 #include "Flight.h"
 #include "NodePtr.h"
@@ -28,6 +30,8 @@ class Scene {
 public:
     /// Error: a file that can't be read, an algorithm that this build lacks, a map too large for Coin's own shapes.
     static terrain::Result<Scene> build(const Options& options);
+    /// Nothing but an invitation to open a file.
+    static Scene empty();
 
     SoSeparator* root() const { return root_.get(); }
     SoCamera* camera() const { return camera_; }
@@ -53,6 +57,8 @@ public:
     /// A meter for the terrain. Error: nothing is known about its full-resolution data.
     terrain::Result<std::unique_ptr<ErrorMeter>> makeErrorMeter();
 
+    /// Lays another picture over a height map, or none where the path is empty. Error: it can't be read, and nothing changes.
+    std::optional<terrain::Error> setTexture(const std::string& path);
     void setWireframe(bool on);
     bool wireframe() const;
 
@@ -62,6 +68,8 @@ private:
     NodePtr<SoSeparator> root_;
     SoCamera* camera_ = nullptr;
     SoDrawStyle* drawStyle_ = nullptr;
+    SoMaterial* material_ = nullptr;  ///< of a height map
+    NodePtr<SoTexture2> texture_;     ///< null without one
     SoNode* terrain_ = nullptr;
     NodePtr<SoPath> terrainPath_;  ///< from the root
     std::string algorithm_;

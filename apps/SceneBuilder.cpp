@@ -15,18 +15,15 @@
 #include <Inventor/nodes/SoCoordinate3.h>
 #include <Inventor/nodes/SoDirectionalLight.h>
 #include <Inventor/nodes/SoIndexedFaceSet.h>
-#include <Inventor/nodes/SoMaterial.h>
 #include <Inventor/nodes/SoNormal.h>
 #include <Inventor/nodes/SoNormalBinding.h>
 #include <Inventor/nodes/SoPerspectiveCamera.h>
 #include <Inventor/nodes/SoQuadMesh.h>
-#include <Inventor/nodes/SoTexture2.h>
 #include <Inventor/nodes/SoTextureCoordinate2.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoTerrainShape.h>
 
 #include "Scene.h"
-#include "Texture.h"
 
 namespace app {
 
@@ -48,7 +45,6 @@ private:
     std::optional<Error> addCoinArrays(Feed feed);
     void addRoot();
     void addCamera();
-    void addMaterial();
     void setFields();
     void waitForTiles();
     template <class Field, class Value>
@@ -82,15 +78,6 @@ void SceneBuilder::addCamera() {
     camera->farDistance = 3.0f * reach;
     scene_.home_ = standardFlight(scene_.flightArea(), 1.0).at(0.0);
     scene_.setPose(scene_.home_);
-}
-
-// White under a texture, which the light then shows in its own colours; the colour of earth without one.
-void SceneBuilder::addMaterial() {
-    auto* material = new SoMaterial;
-    const SbColor color = options_.texture.empty() ? SbColor(0.62f, 0.57f, 0.47f) : SbColor(1.0f, 1.0f, 1.0f);
-    material->diffuseColor = color;
-    material->ambientColor = color * 0.4f;
-    scene_.root_->addChild(material);
 }
 
 // A flag that names a field the shape does not have is said to have no effect, and the program goes on.
@@ -202,12 +189,9 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     scene_.box_.extendBy(SbVec3f(end[0], end[1], float(scene_.grid_->maximum)));
     addRoot();
     addCamera();
-    addMaterial();
-    if (!options_.texture.empty()) {
-        auto texture = loadTexture(options_.texture);
-        if (!texture) return texture.error();
-        scene_.root_->addChild(texture.value());
-    }
+    scene_.material_ = new SoMaterial;
+    scene_.root_->addChild(scene_.material_);
+    if (auto problem = scene_.setTexture(options_.texture)) return problem;
     if (auto problem = addTerrain(options_.algorithm ? *options_.algorithm : *findAlgorithm("roam"))) return problem;
     setFields();
     waitForTiles();

@@ -20,15 +20,31 @@ int fail(const terrain::Error& error) {
     return EXIT_FAILURE;
 }
 
+int refuse(const terrain::Error& error) {
+    std::fprintf(stderr, "SoTerrainTest: %s\n%s", error.message().c_str(), app::usage().c_str());
+    return 2;
+}
+
+// Without a word about what to show: the terrain that comes with the program, or an invitation to open one.
+void nameShippedTerrain(app::Options& options) {
+    options.frustumCulling = true;
+    const auto map = app::installedFile("terrain.png");
+    if (!map) return;
+    options.heightMap = *map;
+    options.texture = app::installedFile("terrain_texture.jpg").value_or("");
+}
+
 int show(app::Options options) {
     const double started = app::nowMs();
     for (std::string* file : {&options.heightMap, &options.texture, &options.scene}) *file = app::findShipped(*file);
     // The window system comes first: without one there is no reason to read a large map.
     if (!options.offscreen) {
-        if (auto problem = app::openDisplay("SoTerrainTest")) return fail(*problem);
+        if (auto problem = app::openDisplay("SoTerrainTest"))
+            return options.namesTerrain() ? fail(*problem) : refuse(app::missingTerrain());
     }
     app::startCoin();
-    auto scene = app::Scene::build(options);
+    if (!options.namesTerrain()) nameShippedTerrain(options);
+    auto scene = options.namesTerrain() ? app::Scene::build(options) : app::Scene::empty();
     if (!scene) return fail(scene.error());
     const auto run = options.offscreen ? app::runOffscreen : app::runWindow;
     if (auto problem = run(options, scene.value(), started)) return fail(*problem);
@@ -39,10 +55,7 @@ int show(app::Options options) {
 
 int main(int argc, char** argv) {
     const auto options = app::parseOptions(argc, argv);
-    if (!options) {
-        std::fprintf(stderr, "SoTerrainTest: %s\n%s", options.error().message().c_str(), app::usage().c_str());
-        return 2;
-    }
+    if (!options) return refuse(options.error());
     if (options.value().help) {
         std::fputs(app::help().c_str(), stdout);
         return EXIT_SUCCESS;

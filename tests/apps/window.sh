@@ -1,55 +1,10 @@
 #!/bin/bash
 # The window: it opens, flies, obeys its keys and ends; a profile can be taken in it.
 . "$(dirname "$0")/common.sh"
-for tool in Xvfb xdotool import; do command -v $tool >/dev/null || skip "$tool is missing"; done
 make_raw "$SCRATCH/map.raw"
-unset WAYLAND_DISPLAY QT_QPA_PLATFORM EGL_PLATFORM
-export XDG_RUNTIME_DIR=$SCRATCH
+. "$(dirname "$0")/display.sh"
 
-Xvfb -displayfd 3 -screen 0 1100x800x24 -nolisten tcp 3>"$SCRATCH/display" >/dev/null 2>&1 &
-server=$!
-trap 'kill $server 2>/dev/null; wait $server 2>/dev/null; rm -rf "$SCRATCH"' EXIT
-for _ in $(seq 100); do [ -s "$SCRATCH/display" ] && break; sleep 0.1; done
-[ -s "$SCRATCH/display" ] || skip "Xvfb does not start"
-DISPLAY=:$(cat "$SCRATCH/display")
-export DISPLAY
-
-# find_window TITLE: waits for $program's window, gives it the focus and leaves its id in $window, empty when it does not come.
-find_window() {
-    window=
-    for _ in $(seq 100); do
-        window=$(xdotool search --onlyvisible --name "$1" 2>/dev/null | tail -1)
-        [ -n "$window" ] && break
-        kill -0 $program 2>/dev/null || return
-        sleep 0.1
-    done
-    [ -z "$window" ] || xdotool windowfocus "$window" mousemove 500 400
-}
-
-"$TEST" -h "$SCRATCH/map.raw" -a quadmesh >"$SCRATCH/out" 2>"$SCRATCH/err" &
-program=$!
-find_window '^SoTerrainTest: .*triangles'
-if [ -z "$window" ]; then
-    grep -q 'without SoQt' "$SCRATCH/err" && skip "this build has no SoQt"
-    cat "$SCRATCH/err"
-    fail "no window with a status line"
-    finish
-fi
-
-shot() {
-    sleep 1
-    import -silent -depth 8 -window root "$SCRATCH/$1.ppm"
-}
-# moved A B: the two screens differ by more than the status line
-moved() {
-    [ "$(cmp -l "$SCRATCH/$1.ppm" "$SCRATCH/$2.ppm" | wc -l)" -gt 20000 ]
-}
-press() {
-    xdotool keydown "$1"
-    sleep 0.5
-    xdotool keyup "$1"
-}
-
+open_window -h "$SCRATCH/map.raw" -a quadmesh
 sleep 1
 shot home
 [ "$(od -An -v -t u1 -w3 -j 16 "$SCRATCH/home.ppm" | sort -u | wc -l)" -gt 50 ] || fail "the window shows no terrain"
@@ -67,7 +22,6 @@ moved home back && fail "Tab does not lead home"
 xdotool mousedown 1 mousemove 600 400 mouseup 1
 shot looked
 moved back looked || fail "the mouse does not look around"
-title() { xdotool getwindowname "$window"; }
 press space
 sleep 0.6
 title | grep -q 'constant height' || fail "Space keeps no height"

@@ -1,0 +1,217 @@
+// Opening files in the running program.
+#ifdef HAVE_CONFIG_H
+#include "config.h"
+#endif
+
+#ifdef HAVE_SOQT
+
+#include <cstdio>
+#include <filesystem>
+
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QFileDialog>
+#include <QMenu>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QUrl>
+
+#include "MainWindow.h"
+#include "OpenFiles.h"
+
+namespace app {
+
+using terrain::Error;
+
+namespace {
+
+QString text(const std::string& bytes) {
+    return QString::fromLocal8Bit(bytes.c_str());
+}
+
+std::string bytes(const QString& text) {
+    return text.toLocal8Bit().toStdString();
+}
+
+std::string absolute(const std::string& path) {
+    std::error_code ignored;
+    return path.empty() ? path : std::filesystem::absolute(path, ignored).string();
+}
+
+std::string nameOf(const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+}
+
+QString filter(const FilePatterns& kind) {
+    QStringList patterns;
+    for (const std::string& pattern : kind.patterns) patterns.append(text(pattern));
+    return QString("%1 (%2)").arg(kind.title, patterns.join(' '));
+}
+
+QString openFilters() {
+    FilePatterns all{"All that can be opened", {}};
+    QStringList filters;
+    for (const FilePatterns& kind : openablePatterns()) {
+        all.patterns.insert(all.patterns.end(), kind.patterns.begin(), kind.patterns.end());
+        filters.append(filter(kind));
+    }
+    filters.prepend(filter(all));
+    filters.append("All files (*)");
+    return filters.join(";;");
+}
+
+std::vector<std::string> localFiles(const QMimeData& data) {
+    std::vector<std::string> paths;
+    for (const QUrl& url : data.urls()) {
+        if (url.isLocalFile()) paths.push_back(bytes(url.toLocalFile()));
+    }
+    return paths;
+}
+
+// What was given for one map does not fit another.
+Options withoutFile(Options options) {
+    options.heightMap.clear();
+    options.scene.clear();
+    options.texture.clear();
+    options.spacing.reset();
+    options.heightScale.reset();
+    options.channel.reset();
+    options.rawSize.reset();
+    options.rawType.reset();
+    return options;
+}
+
+}  // namespace
+
+void MainWindow::fail(const Error& problem) {
+    std::fprintf(stderr, "SoTerrainTest: %s\n", problem.message().c_str());
+    QMessageBox::warning(this, "SoTerrainTest", text(problem.message()));
+}
+
+bool MainWindow::showScene(const Options& next, bool keepCamera) {
+    auto built = Scene::build(next);
+    if (!built) {
+        fail(built.error());
+        return false;
+    }
+    const bool wireframe = scene_.wireframe();
+    options_ = next;
+    scene_ = std::move(built).value();
+    scene_.setWireframe(wireframe);
+    area_->sceneChanged(keepCamera);
+    noteFile();
+    refresh();
+    return true;
+}
+
+// The window's title and the list of recent files follow what is shown.
+void MainWindow::noteFile() {
+    const std::string& path = options_.scene.empty() ? options_.heightMap : options_.scene;
+    fileName_ = nameOf(path);
+    if (path.empty()) return;
+    settings_.addRecentFile({absolute(path), absolute(options_.texture), options_.rawSize, options_.rawType});
+    fillRecentFiles();
+}
+
+void MainWindow::openFiles(const std::vector<std::string>& paths) {
+    if (area_->endsByItself()) return;
+    Options next = withoutFile(options_);
+    std::string picture;
+    for (const std::string& path : paths) {
+        const FileKind kind = fileKind(path);
+        if (kind == FileKind::Picture)
+            picture = path;
+        else
+            (kind == FileKind::Scene ? next.scene : next.heightMap) = path;
+    }
+    if (!next.namesTerrain() && !picture.empty() && !options_.heightMap.empty()) return setTexture(picture);
+    if (!next.namesTerrain()) std::swap(next.heightMap, picture);
+    if (!next.scene.empty()) {
+        next.heightMap.clear();
+        next.algorithm = nullptr;
+        picture.clear();
+    }
+    next.texture = picture;
+    if (next.namesTerrain()) showScene(next, false);
+}
+
+void MainWindow::openRecent(const RecentFile& file) {
+    Options next = withoutFile(options_);
+    const bool isScene = fileKind(file.path) == FileKind::Scene;
+    (isScene ? next.scene : next.heightMap) = file.path;
+    if (isScene) next.algorithm = nullptr;
+    next.texture = file.texture;
+    next.rawSize = file.rawSize;
+    next.rawType = file.rawType;
+    showScene(next, false);
+}
+
+void MainWindow::setTexture(const std::string& path) {
+    if (auto problem = scene_.setTexture(path)) return fail(*problem);
+    options_.texture = path;
+    noteFile();
+    area_->wake();
+}
+
+QString MainWindow::folder() const {
+    const std::string& path = options_.scene.empty() ? options_.heightMap : options_.scene;
+    return text(std::filesystem::path(absolute(path)).parent_path().string());
+}
+
+void MainWindow::chooseFiles() {
+    const QStringList chosen =
+        QFileDialog::getOpenFileNames(this, "Open a terrain", folder(), openFilters(), nullptr, QFileDialog::HideNameFilterDetails);
+    std::vector<std::string> paths;
+    for (const QString& path : chosen) paths.push_back(bytes(path));
+    if (!paths.empty()) openFiles(paths);
+    area_->takeFocus();
+}
+
+void MainWindow::chooseTexture() {
+    const QString chosen =
+        QFileDialog::getOpenFileName(this, "Open a texture", folder(), filter(picturePatterns()) + ";;All files (*)", nullptr,
+                                     QFileDialog::HideNameFilterDetails);
+    if (!chosen.isEmpty()) setTexture(bytes(chosen));
+    area_->takeFocus();
+}
+
+bool MainWindow::canOpen() const {
+    return !area_->endsByItself();
+}
+
+bool MainWindow::canTexture() const {
+    return canOpen() && !options_.heightMap.empty();
+}
+
+void MainWindow::fillRecentFiles() {
+    recent_->clear();
+    for (const RecentFile& file : settings_.recentFiles()) {
+        std::string title = nameOf(file.path);
+        if (!file.texture.empty()) title += " with " + nameOf(file.texture);
+        QAction* action = recent_->addAction(text(title).replace('&', "&&"), this, [this, file] { openRecent(file); });
+        action->setStatusTip(text(file.path));
+    }
+    recent_->setEnabled(!recent_->isEmpty() && canOpen());
+    if (recent_->isEmpty()) return;
+    recent_->addSeparator();
+    recent_->addAction("&Forget these", this, [this] {
+        settings_.clearRecentFiles();
+        fillRecentFiles();
+    });
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+    if (canOpen() && !localFiles(*event->mimeData()).empty()) event->acceptProposedAction();
+}
+
+// The dialogs that may follow must not keep the other program waiting.
+void MainWindow::dropEvent(QDropEvent* event) {
+    const std::vector<std::string> paths = localFiles(*event->mimeData());
+    event->acceptProposedAction();
+    QMetaObject::invokeMethod(
+        this, [this, paths] { openFiles(paths); }, Qt::QueuedConnection);
+}
+
+}  // namespace app
+
+#endif

@@ -1,0 +1,81 @@
+#!/bin/bash
+# Menus and dialogs of the window: files are opened, dropped and remembered; a bad one changes nothing.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/display.sh"
+make_raw "$SCRATCH/map.raw"
+cp "$SCRATCH/map.raw" "$SCRATCH/other map.raw"
+{ printf 'P6\n2 2\n255\n'; printf '\377\0\0\0\377\0\0\0\377\377\377\0'; } >"$SCRATCH/colours.ppm"
+printf 'no heights\n' >"$SCRATCH/bad.raw"
+cat >"$SCRATCH/scene.iv" <<'SCENE'
+#Inventor V2.1 ascii
+Separator {
+    SoHeightMap { fields [ SFString filename, SFFloat heightScale ] filename "map.raw" heightScale 0.1 }
+    SoGeoMipmapTerrain { fields [ SFFloat pixelError ] pixelError 3 }
+}
+SCENE
+
+# choose TITLE FILE: types a file's name into a dialog.
+choose() {
+    find_dialog "$1"
+    xdotool type --delay 5 "$2"
+    sleep 0.3
+    xdotool key Return
+    sleep 0.5
+    xdotool windowfocus "$window"
+}
+
+# Nothing to show: an invitation.
+open_window
+shot empty
+says 'no terrain' || [ -e /usr/share/soterrain/terrain.png ] || fail "an empty window says: $(title)"
+xdotool key ctrl+o
+choose '^Open a terrain$' "$SCRATCH/map.raw"
+says 'roam .*map.raw$' || fail "Ctrl+O does not open a height map: $(title)"
+title | grep -q 'no culling' && fail "a map from the menu is drawn without culling"
+shot map
+moved empty map || fail "the opened map is not seen"
+xdotool key ctrl+t
+choose '^Open a texture$' "$SCRATCH/colours.ppm"
+shot textured
+moved map textured || fail "the texture is not seen"
+
+# A bad file is told in one message, and the scene stays.
+xdotool key ctrl+o
+choose '^Open a terrain$' "$SCRATCH/bad.raw"
+find_dialog '^SoTerrainTest$'
+xdotool key Return
+sleep 0.5
+xdotool windowfocus "$window"
+[ "$(grep -c 'bad.raw' "$SCRATCH/err")" = 1 ] || { fail "not one message about a bad file"; cat "$SCRATCH/err"; }
+says 'roam .*map.raw$' || fail "a bad file takes the scene: $(title)"
+
+xdotool key ctrl+o
+choose '^Open a terrain$' "$SCRATCH/scene.iv"
+says 'SoGeoMipmapTerrain .*of 3.00 px.*scene.iv$' || fail "a scene is not opened: $(title)"
+
+# File > Open recent: the map before the scene, with its texture.
+xdotool key alt+f
+sleep 0.3
+xdotool key Down key Right
+sleep 0.3
+xdotool key Down key Return
+says 'roam .*map.raw$' || fail "the recent file is not opened: $(title)"
+shot recent
+moved textured recent && fail "a recent file comes without its texture"
+
+xdotool key F1
+find_dialog '^Keys of SoTerrainTest$'
+xdotool key Escape
+sleep 0.3
+kill -0 $program || fail "Esc in a dialog ends the program"
+close_window
+grep -q 'other' "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" && fail "a file that was not opened is remembered"
+grep -q 'scene.iv' "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" || fail "a file that was opened is not remembered"
+
+# A run that is measured remembers nothing, nor does one without settings.
+cp "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" "$SCRATCH/before"
+expect 0 timeout 60 "$TEST" -h "$SCRATCH/other map.raw" --frames 3 --stats
+open_window -h "$SCRATCH/other map.raw" --no-settings
+close_window
+cmp "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" "$SCRATCH/before" || fail "a run without settings changes them"
+finish
