@@ -24,6 +24,7 @@ class BruteForceMesh : public LodAlgorithm {
 public:
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
     bool update(const SampleGrid& grid, const GridEdits& edits) override;
+    void eachPatch(const SampleGrid& grid, const PatchVisitor& visit) const override;
     std::size_t bytes() const override { return indices_.capacity() * sizeof(std::uint32_t); }
 
 private:

@@ -274,7 +274,7 @@ bool ChunkedLod::draw(const TileId& id, const TileMesh& mesh, const Box& box, fl
     const float share = parentShare(mesh, parentPixels);
     const float error = share > 0.0f ? mesh.error * (1.0f - share) + mesh.parentError * share : mesh.error;
     if (!space_->isOutside(box)) report_.errorPixels = std::max(report_.errorPixels, space_->screenError(error, box));
-    drawn_.push_back({id, &mesh, share, 0});
+    drawn_.push_back({id, &mesh, share, 0, mesh.error, std::uint32_t(mesh.indices.size())});
     return true;
 }
 

@@ -37,6 +37,7 @@ public:
     /// Tiles with changed samples are made anew at once; those larger than kAtOnce cells keep their vertices and take a new error,
     /// which may be larger than exact, until they are made anew some time. What is being built of changed samples is dropped.
     bool update(const SampleGrid& grid, const GridEdits& edits) override;
+    void eachPatch(const SampleGrid& grid, const PatchVisitor& visit) const override;
     static constexpr int kAtOnce = 512;
 
     std::size_t bytes() const override;
@@ -52,6 +53,9 @@ private:
         const TileMesh* mesh = nullptr;
         float parentShare = 0.0f;  ///< 1 - t
         std::uint32_t base = 0;    ///< first vertex in the pool
+        // Of the mesh, which an edit may replace before the next selection:
+        float error = 0.0f;
+        std::uint32_t indexCount = 0;
     };
     struct Slot {
         std::uint32_t base = 0;

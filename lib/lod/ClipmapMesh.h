@@ -52,6 +52,7 @@ public:
 
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
     bool update(const SampleGrid& grid, const GridEdits& edits) override;
+    void eachPatch(const SampleGrid& grid, const PatchVisitor& visit) const override;
     std::size_t bytes() const override;
 
     const Clipmap& clipmap() const { return clipmap_; }

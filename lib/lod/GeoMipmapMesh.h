@@ -39,6 +39,7 @@ public:
 
     DrawList select(const SampleGrid& grid, const View& view, const LodSettings& settings) override;
     bool update(const SampleGrid& grid, const GridEdits& edits) override;
+    void eachPatch(const SampleGrid& grid, const PatchVisitor& visit) const override;
     std::size_t bytes() const override;
 
     /// Level of a block; -1 when it was not drawn.

@@ -8,6 +8,7 @@
 #include "height/EditLog.h"
 #include "height/SampleGrid.h"
 #include "lod/DrawList.h"
+#include "lod/DrawnPatch.h"
 
 namespace terrain {
 
@@ -37,6 +38,8 @@ public:
     /// selections are to show it, and to list as new all vertices whose sample has changed or has a neighbour that has: their
     /// normals are others. False where that takes a new mesh.
     virtual bool update(const SampleGrid& /*grid*/, const GridEdits& /*edits*/) { return false; }
+    /// All triangles of the latest selection, part after part, seams last. It costs nothing unless it is called.
+    virtual void eachPatch(const SampleGrid& grid, const PatchVisitor& visit) const = 0;
     /// Memory held.
     virtual std::size_t bytes() const = 0;
 };

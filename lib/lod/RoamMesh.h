@@ -46,6 +46,7 @@ public:
     /// Takes new bounds, errors and vertices where diamonds hold changed samples; what is split stays split until the next selection
     /// finds it needless. Not where holes come or go.
     bool update(const SampleGrid& grid, const GridEdits& edits) override;
+    void eachPatch(const SampleGrid& grid, const PatchVisitor& visit) const override;
 
     /// Triangles of the whole mesh, those outside of the view included.
     std::uint32_t meshTriangles() const { return meshTriangles_; }
