@@ -81,17 +81,6 @@ Options withoutFile(Options options) {
     return options;
 }
 
-// A scene file says itself how it is drawn.
-Options forScene(Options options) {
-    options.algorithm = nullptr;
-    options.frustumCulling = false;
-    options.pixelError.reset();
-    for (auto* value :
-         {&options.triangleCount, &options.tileSize, &options.clipmapSize, &options.clipmapLevels, &options.detailLevels})
-        value->reset();
-    return options;
-}
-
 }  // namespace
 
 void MainWindow::fail(const Error& problem) {
@@ -100,7 +89,7 @@ void MainWindow::fail(const Error& problem) {
 }
 
 bool MainWindow::showScene(const Options& next, bool keepCamera) {
-    auto built = Scene::build(next.scene.empty() ? next : forScene(next));
+    auto built = Scene::build(next);
     if (!built) {
         fail(built.error());
         return false;
@@ -126,22 +115,31 @@ void MainWindow::noteFile() {
 
 void MainWindow::openFiles(const std::vector<std::string>& paths) {
     if (area_->endsByItself()) return;
-    std::string scene, map, picture;
+    Options next = withoutFile(options_);
+    std::string picture;
     for (const std::string& path : paths) {
         const FileKind kind = fileKind(path);
-        (kind == FileKind::Picture ? picture : kind == FileKind::Scene ? scene : map) = path;
+        if (kind == FileKind::Picture)
+            picture = path;
+        else
+            (kind == FileKind::Scene ? next.scene : next.heightMap) = path;
     }
-    if (!scene.empty()) return openFile({scene, "", {}, {}});
-    if (map.empty() && !picture.empty() && scene_.isHeightMap()) return setTexture(picture);
-    if (map.empty()) std::swap(map, picture);
-    if (!map.empty()) openFile({map, picture, {}, {}});
+    if (!next.namesTerrain() && !picture.empty() && !options_.heightMap.empty()) return setTexture(picture);
+    if (!next.namesTerrain()) std::swap(next.heightMap, picture);
+    if (!next.scene.empty()) {
+        next.heightMap.clear();
+        next.algorithm = nullptr;
+        picture.clear();
+    }
+    next.texture = picture;
+    if (next.namesTerrain()) showScene(next, false);
 }
 
-void MainWindow::openFile(const RecentFile& file) {
-    if (scene_.isHeightMap()) scene_.readFields(options_);
+void MainWindow::openRecent(const RecentFile& file) {
     Options next = withoutFile(options_);
-    (fileKind(file.path) == FileKind::Scene ? next.scene : next.heightMap) = file.path;
-    if (!next.heightMap.empty() && !scene_.isHeightMap()) next.frustumCulling = true;
+    const bool isScene = fileKind(file.path) == FileKind::Scene;
+    (isScene ? next.scene : next.heightMap) = file.path;
+    if (isScene) next.algorithm = nullptr;
     next.texture = file.texture;
     next.rawSize = file.rawSize;
     next.rawType = file.rawType;
@@ -182,7 +180,7 @@ bool MainWindow::canOpen() const {
 }
 
 bool MainWindow::canTexture() const {
-    return canOpen() && scene_.isHeightMap();
+    return canOpen() && !options_.heightMap.empty();
 }
 
 void MainWindow::fillRecentFiles() {
@@ -190,7 +188,7 @@ void MainWindow::fillRecentFiles() {
     for (const RecentFile& file : settings_.recentFiles()) {
         std::string title = nameOf(file.path);
         if (!file.texture.empty()) title += " with " + nameOf(file.texture);
-        QAction* action = recent_->addAction(text(title).replace('&', "&&"), this, [this, file] { openFile(file); });
+        QAction* action = recent_->addAction(text(title).replace('&', "&&"), this, [this, file] { openRecent(file); });
         action->setStatusTip(text(file.path));
     }
     recent_->setEnabled(!recent_->isEmpty() && canOpen());

@@ -28,6 +28,9 @@
       pixelError 2
       frustumCulling TRUE
       freeze FALSE
+      frozenFrustum FALSE
+      debugView NONE
+      wireframeOverlay FALSE
       alternateRep NULL
     }
   \endcode

@@ -29,6 +29,9 @@
       pixelError 2
       frustumCulling TRUE
       freeze FALSE
+      frozenFrustum FALSE
+      debugView NONE
+      wireframeOverlay FALSE
       alternateRep NULL
       tileSize 64
       morphing TRUE

@@ -36,6 +36,9 @@
       pixelError 2
       frustumCulling TRUE
       freeze FALSE
+      frozenFrustum FALSE
+      debugView NONE
+      wireframeOverlay FALSE
       alternateRep NULL
       clipmapSize 255
       levels 0

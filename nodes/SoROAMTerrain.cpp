@@ -32,6 +32,9 @@
       pixelError 2
       frustumCulling TRUE
       freeze FALSE
+      frozenFrustum FALSE
+      debugView NONE
+      wireframeOverlay FALSE
       alternateRep NULL
       triangleCount 0
       geomorph FALSE

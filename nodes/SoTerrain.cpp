@@ -6,7 +6,6 @@
 #include <SoTerrain/SoGeometryClipmapTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoHeightMapElement.h>
-#include <SoTerrain/SoPerfGraph.h>
 #include <SoTerrain/SoROAMTerrain.h>
 #include <SoTerrain/SoTerrainDetail.h>
 #include <SoTerrain/SoTerrainDrape.h>
@@ -25,7 +24,6 @@ void SoTerrain::init()
     SoHeightMapElement::initClass();
     SoTerrainDetail::initClass();
     SoHeightMap::initClass();
-    SoPerfGraph::initClass();
     SoTerrainTextureElement::initClass();
     SoTerrainTexture::initClass();
     SoTerrainShape::initClass();

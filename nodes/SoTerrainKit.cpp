@@ -232,6 +232,9 @@ void handOver(SoTerrainShape & from, SoTerrainShape & to)
     handOver(from.pixelError, to.pixelError);
     handOver(from.frustumCulling, to.frustumCulling);
     handOver(from.freeze, to.freeze);
+    handOver(from.frozenFrustum, to.frozenFrustum);
+    handOver(from.debugView, to.debugView);
+    handOver(from.wireframeOverlay, to.wireframeOverlay);
     handOver(from.alternateRep, to.alternateRep);
     const SbName name = from.getName();
     if (name == SbName::empty()) return;

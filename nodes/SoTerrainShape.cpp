@@ -23,6 +23,12 @@
 
   Picking is exact: it meets the full-resolution triangles whatever is on screen, and gives an SoTerrainDetail. So do bounding box and
   primitives.
+
+  To look at an algorithm at work there are debugView, wireframeOverlay, and freeze with frozenFrustum; all may be set at any time, in any program:
+
+  \code
+  SoChunkedLoDTerrain { debugView LEVELS wireframeOverlay TRUE }
+  \endcode
 */
 
 /*!
@@ -50,6 +56,41 @@
 /*!
   \var SoSFBool SoTerrainShape::freeze
   While TRUE the mesh that was chosen last stays, whatever the camera does: a way to look at it from outside. Default FALSE.
+*/
+/*!
+  \var SoSFBool SoTerrainShape::frozenFrustum
+  Whether the edges of the view volume that a frozen mesh was chosen for are drawn, as yellow lines. Default FALSE.
+*/
+/*!
+  \enum SoTerrainShape::DebugView
+  What is drawn in place of the terrain: NONE the terrain itself, TILES its parts, LEVELS sizes of triangles, ERRORS distances from the samples on screen, LOADING what is
+  still to come.
+*/
+/*!
+  \var SoSFEnum SoTerrainShape::debugView
+  Draws the mesh in colours that tell how it was chosen. Lights, materials and textures do not act on them; slopes are shaded a little, unless SoLightModel is
+  BASE_COLOR. Bounding box, picks and primitives stay what they are. SoGeometryClipmapTerrain draws from vertex arrays meanwhile. Such a picture
+  takes many times as long as the terrain. Default NONE.
+
+  TILES: each tile or block has one of sixteen colours, its neighbours have others, and it keeps it while it is drawn. SoROAMTerrain has no tiles; triangles have the colour of
+  the square of the bisection that they lie in, a sixteenth of the map wide or more. Of SoGeometryClipmapTerrain the squares of 16 x 16 cells are shown in which levels are kept.
+  Walls between tiles are dark grey.
+
+  LEVELS: the same colour means the same size of triangles in all nodes. Level 0, full detail, is yellow; each further one, cells twice as wide, goes on over green, blue and
+  violet, up to level 9. Levels finer than the samples (SoGeometryClipmapTerrain::detailLevels) are paler than yellow.
+
+  ERRORS: how far what is drawn is from the full-resolution samples, in pixels of the current camera: 0 is dark blue, then blue, green and yellow follow, pixelError is red,
+  and what is further off magenta. So a mesh that keeps pixelError has no magenta, and a frozen one has where one comes too near. With a pixelError of 0 red is one pixel. On regular grids each
+  pixel is compared with the cell of the full data there (between the two surfaces that its diagonals make there is no error); of curved grids, maps of more than 2^26 samples or more along a side than a texture may have,
+  and with detailLevels, each triangle has the colour of the worst sample in view that it covers.
+
+  LOADING: grey is drawn as wanted, orange stands in for finer tiles or levels that are still being built or sent, blue came in this frame, and yellow came and stands in. Nodes that load nothing are all
+  grey. SoTerrainTexture is not shown.
+*/
+/*!
+  \var SoSFBool SoTerrainShape::wireframeOverlay
+  Whether the edges of the triangles are drawn over the terrain, or over a debugView: lines one pixel wide, fainter where triangles are hardly wider than that. They lie exactly on the surface, so that
+  nothing flickers or shines through. SoGeometryClipmapTerrain draws from vertex arrays meanwhile. With SoDrawStyle LINES or POINTS there is nothing to draw them over. Default FALSE.
 */
 /*!
   \var SoSFNode SoTerrainShape::alternateRep
@@ -90,6 +131,7 @@
 #include <glm/matrix.hpp>
 
 #include "FieldsInUse.h"
+#include "MeshPicture.h"
 #include "StateAttributes.h"
 #include "StateView.h"
 #include "TerrainFrame.h"
@@ -113,6 +155,7 @@ bool isMirrored(const terrain::SampleGrid & grid)
 {
     return glm::determinant(grid.localFromFrame()) < 0.0;
 }
+
 }  // namespace
 
 SoTerrainShape::Private::Private(SoTerrainShape * masterArg)
@@ -139,7 +182,16 @@ SoTerrainShape::SoTerrainShape() : pimpl(new Private(this))
     SO_NODE_ADD_FIELD(pixelError, (2.0f));
     SO_NODE_ADD_FIELD(frustumCulling, (TRUE));
     SO_NODE_ADD_FIELD(freeze, (FALSE));
+    SO_NODE_ADD_FIELD(frozenFrustum, (FALSE));
+    SO_NODE_ADD_FIELD(debugView, (NONE));
+    SO_NODE_ADD_FIELD(wireframeOverlay, (FALSE));
     SO_NODE_ADD_FIELD(alternateRep, (NULL));
+    SO_NODE_DEFINE_ENUM_VALUE(DebugView, NONE);
+    SO_NODE_DEFINE_ENUM_VALUE(DebugView, TILES);
+    SO_NODE_DEFINE_ENUM_VALUE(DebugView, LEVELS);
+    SO_NODE_DEFINE_ENUM_VALUE(DebugView, ERRORS);
+    SO_NODE_DEFINE_ENUM_VALUE(DebugView, LOADING);
+    SO_NODE_SET_SF_ENUM_TYPE(debugView, DebugView);
 }
 
 SoTerrainShape::~SoTerrainShape() {}
@@ -269,22 +321,45 @@ void SoTerrainShape::Private::renderMesh(const TerrainFrame & frame)
         view.hasMesh = false;
         statistics.buildMilliseconds += millisecondsSince(start);
     }
-    if (!master->freeze.getValue() || !view.hasMesh) select(view, frame.camera, frame.settings, frame.data, frame.attributes);
+    const bool isSelection = !master->freeze.getValue() || !view.hasMesh;
+    if (isSelection) select(view, *view.chosenFor, frame.settings, frame.data, frame.attributes);
     const Clock::time_point start = Clock::now();
     if (frame.attributes.hasOverallNormal()) glNormal3fv(frame.attributes.normal(0, 0).getValue());
     SoState * state = frame.action->getState();
     const bool cull = !glIsEnabled(GL_CULL_FACE) && hidesUndersides(view, frame.camera, state, frame.data);
     if (cull) glEnable(GL_CULL_FACE);
-    {
+    const bool debugs = wantsDebug(state);
+    if (!debugs || master->debugView.getValue() == NONE) {
         const TerrainTextureUse::FixedFunction tiled(frame.texture);
         view.renderer.draw();
     }
+    if (debugs) renderDebug(frame, isSelection);
     if (cull) glDisable(GL_CULL_FACE);
     if (frame.attributes.format().colours) SoGLLazyElement::getInstance(state)->reset(state, SoLazyElement::DIFFUSE_MASK);
     statistics.drawMilliseconds = millisecondsSince(start);
     statistics.triangles = view.renderer.triangles();
     statistics.drawCalls = view.renderer.draws();
     statistics.patches = view.renderer.triangles() > 0 ? view.report.patches : 0;
+}
+
+bool SoTerrainShape::Private::wantsDebug(SoState * state) const
+{
+    if (master->debugView.getValue() == NONE && !master->wireframeOverlay.getValue()) return false;
+    return (SoShapeStyleElement::get(state)->getFlags() & SoShapeStyleElement::SHADOWMAP) == 0;
+}
+
+void SoTerrainShape::Private::renderDebug(const TerrainFrame & frame, bool isSelection)
+{
+    SoState * state = frame.action->getState();
+    if (!frame.view.debug) frame.view.debug = std::make_unique<MeshPicture>();
+    MeshPicture::Wanted wanted;
+    wanted.picture = master->debugView.getValue();
+    wanted.edges = master->wireframeOverlay.getValue();
+    wanted.isSelection = isSelection;
+    wanted.hasDetail = master->detailOf(frame.data) != NULL;
+    wanted.isShaded = SoLazyElement::getLightModel(state) != SoLazyElement::BASE_COLOR;
+    const std::string problem = frame.view.debug->draw(frame, *frame.view.algorithm, wanted);
+    if (!problem.empty()) master->warnOnce(problem.c_str());
 }
 
 void SoTerrainShape::Private::bringUpToDate(TerrainView & view, const TerrainGrid & data) const
@@ -331,7 +406,12 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     terrain::LodSettings settings = settingsFor(state, *data);
     settings.vertexBytes = sizeof(glm::vec3) + attributes.format().stride();
     const TerrainFrame frame{action, *data, camera, settings, attributes, texture, view};
-    if (!master->renderOwn(frame, statistics)) renderMesh(frame);
+    if (!master->freeze.getValue() || !view.chosenFor) view.chosenFor = camera;
+    const bool debugs = wantsDebug(state);
+    if (!debugs && view.debug) TerrainViews::discardDebug(view);
+    // Of what is drawn by programs of the node's own the triangles are known as a mesh only.
+    if (debugs || !master->renderOwn(frame, statistics)) renderMesh(frame);
+    if (master->freeze.getValue() && master->frozenFrustum.getValue()) drawViewVolume(*view.chosenFor);
 
     statistics.converged = view.report.converged && texture.converged;
     statistics.uploadedBytes += texture.uploadedBytes;
@@ -339,7 +419,6 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.errorPixels = view.report.errorPixels;
     statistics.memoryBytes = grids.bytes() + views.memoryBytes();
     statistics.bufferBytes = views.bufferBytes();
-    counters.publish(statistics);
     if (!statistics.converged && !again.isScheduled()) again.schedule();
 }
 

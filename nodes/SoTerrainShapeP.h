@@ -11,7 +11,6 @@
 #include <SoTerrain/SoTerrainShape.h>
 
 #include "GridCache.h"
-#include "TerrainCounters.h"
 #include "TerrainViews.h"
 
 class StateAttributes;
@@ -31,6 +30,9 @@ public:
     void bringUpToDate(TerrainView & view, const TerrainGrid & data) const;
     /// Draws from the view's mesh.
     void renderMesh(const TerrainFrame & frame);
+    /// What is to be drawn of the mesh itself, instead of or beside the terrain; none while shadows are being made.
+    bool wantsDebug(SoState * state) const;
+    void renderDebug(const TerrainFrame & frame, bool isSelection);
     /// Whether undersides of triangles are hidden by upper sides, so that GL may leave them out and the picture stays the same.
     bool hidesUndersides(const TerrainView & view, const terrain::View & camera, SoState * state, const TerrainGrid & data) const;
 
@@ -39,7 +41,6 @@ public:
     TerrainViews views;
     std::uint64_t meshVersion = 0;  ///< meshes of an earlier one are replaced
     SoTerrainStatistics statistics;
-    TerrainCounters counters;
     std::set<std::string> warned;
     SoOneShotSensor again;  ///< asks for another frame while a mesh has not converged
 };

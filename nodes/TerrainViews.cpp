@@ -11,6 +11,8 @@
 #include <Inventor/elements/SoViewportRegionElement.h>
 #include <Inventor/misc/SoContextHandler.h>
 
+#include "MeshPicture.h"
+
 namespace {
 
 std::uint64_t hashOf(const SoFullPath * path)
@@ -43,6 +45,8 @@ std::vector<terrain::GlName> namesOf(TerrainView & view)
     std::vector<terrain::GlName> names = view.texture.release();
     if (view.drawing)
         for (const terrain::GlName & name : view.drawing->release()) names.push_back(name);
+    if (view.debug)
+        for (const terrain::GlName & name : view.debug->release()) names.push_back(name);
     for (const GLuint buffer : view.renderer.release()) names.push_back({terrain::GlName::Buffer, buffer});
     return names;
 }
@@ -63,6 +67,8 @@ TerrainView::TerrainView(const ViewKey & k, SoNode * root) : key(k)
 {
     root_.attach(root);
 }
+
+TerrainView::~TerrainView() {}
 
 TerrainViews::TerrainViews()
 {
@@ -100,6 +106,7 @@ void TerrainViews::giveUp(TerrainView & view)
         SoGLCacheContextElement::scheduleDeleteCallback(view.key.context, deleterOf(name.kind), reinterpret_cast<void *>(std::uintptr_t(name.name)));
     view.algorithm.reset();
     view.drawing.reset();
+    view.debug.reset();
     view.texture = {};
     view.boxes.reset();
     view.isOver_ = true;
@@ -109,6 +116,12 @@ void TerrainViews::discardDrawing(TerrainView & view)
 {
     if (view.drawing) terrain::deleteNames(view.drawing->release());
     view.drawing.reset();
+}
+
+void TerrainViews::discardDebug(TerrainView & view)
+{
+    if (view.debug) terrain::deleteNames(view.debug->release());
+    view.debug.reset();
 }
 
 TerrainView & TerrainViews::find(SoGLRenderAction * action)
@@ -136,10 +149,11 @@ TerrainView & TerrainViews::find(SoGLRenderAction * action)
     TerrainView & view = **found;
     view.lastRound_ = round_;
     // Another context may have taken the id of one that went without notice. Its objects are not ours.
-    if (!view.renderer.isThere() || !view.texture.isThere() || (view.drawing && !view.drawing->isThere())) {
+    if (!view.renderer.isThere() || !view.texture.isThere() || (view.drawing && !view.drawing->isThere()) || (view.debug && !view.debug->isThere())) {
         namesOf(view);
         view.algorithm.reset();
         view.drawing.reset();
+        view.debug.reset();
     }
     return view;
 }
@@ -161,6 +175,7 @@ std::size_t TerrainViews::bufferBytes() const
 {
     std::size_t total = 0;
     for (const auto & view : views_)
-        total += view->renderer.bufferBytes() + (view->drawing ? view->drawing->bufferBytes() : 0) + view->texture.textureBytes();
+        total += view->renderer.bufferBytes() + (view->drawing ? view->drawing->bufferBytes() : 0) + (view->debug ? view->debug->bufferBytes() : 0) +
+                 view->texture.textureBytes();
     return total;
 }

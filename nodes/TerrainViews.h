@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Inventor/SbVec2s.h>
@@ -12,11 +13,13 @@
 #include <glm/mat4x4.hpp>
 
 #include "TerrainTextureUse.h"
+#include "base/View.h"
 #include "gl/GlProgram.h"
 #include "gl/TerrainRenderer.h"
 #include "lod/LodAlgorithm.h"
 #include "lod/TerrainModel.h"
 
+class MeshPicture;
 class SoGLRenderAction;
 
 /// What tells one view of a node from another: context, place in the scene graph, place on the screen.
@@ -57,8 +60,11 @@ struct TerrainView {
     TerrainTextureUse texture;
     terrain::SelectionReport report;  ///< of the latest selection
     bool hasMesh = false;
+    std::optional<terrain::View> chosenFor;  ///< camera of the latest frame that was not frozen
+    std::unique_ptr<MeshPicture> debug;        ///< while there is something of it to draw
 
     TerrainView(const ViewKey & key, SoNode * root);
+    ~TerrainView();
 
 private:
     friend class TerrainViews;
@@ -86,6 +92,7 @@ public:
     TerrainView & find(SoGLRenderAction * action);
     /// Gives up what a node has drawn a view with, whose context must be current.
     static void discardDrawing(TerrainView & view);
+    static void discardDebug(TerrainView & view);
     std::size_t memoryBytes() const;
     std::size_t bufferBytes() const;
 

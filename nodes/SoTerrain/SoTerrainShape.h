@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <Inventor/fields/SoSFBool.h>
+#include <Inventor/fields/SoSFEnum.h>
 #include <Inventor/fields/SoSFFloat.h>
 #include <Inventor/fields/SoSFInt32.h>
 #include <Inventor/fields/SoSFNode.h>
@@ -31,6 +32,8 @@ class SoTerrainShape : public SoShape {
     SO_NODE_ABSTRACT_HEADER(SoTerrainShape);
 
 public:
+    enum DebugView { NONE, TILES, LEVELS, ERRORS, LOADING };
+
     static void initClass();
 
     SoSFInt32 verticesPerRow;
@@ -39,6 +42,9 @@ public:
     SoSFFloat pixelError;
     SoSFBool frustumCulling;
     SoSFBool freeze;
+    SoSFBool frozenFrustum;
+    SoSFEnum debugView;
+    SoSFBool wireframeOverlay;
     SoSFNode alternateRep;
 
     /// Figures of the latest frame drawn by this node.

@@ -192,6 +192,9 @@ TEST(Kit, KeepsCommonFieldsAndConnectionsWhenTheAlgorithmChanges) {
     old->startIndex = 65;
     old->frustumCulling = FALSE;
     old->freeze = TRUE;
+    old->frozenFrustum = TRUE;
+    old->debugView = SoTerrainShape::LEVELS;
+    old->wireframeOverlay = TRUE;
     old->setName("mountains");
     old->pixelError.connectFrom(&engine->oa);
     Ref<SoSphere> follower(new SoSphere);
@@ -206,6 +209,9 @@ TEST(Kit, KeepsCommonFieldsAndConnectionsWhenTheAlgorithmChanges) {
         EXPECT_EQ(terrain->startIndex.getValue(), 65);
         EXPECT_FALSE(terrain->frustumCulling.getValue());
         EXPECT_TRUE(terrain->freeze.getValue());
+        EXPECT_TRUE(terrain->frozenFrustum.getValue());
+        EXPECT_EQ(terrain->debugView.getValue(), SoTerrainShape::LEVELS);
+        EXPECT_TRUE(terrain->wireframeOverlay.getValue());
         EXPECT_EQ(SoNode::getByName("mountains"), terrain);
         engine->a = 5.0f + float(i);
         EXPECT_EQ(terrain->pixelError.getValue(), 5.0f + float(i));
