@@ -5,13 +5,15 @@ namespace app {
 namespace {
 
 constexpr Algorithm table[] = {
-    {"bruteforce", "SoBruteForceTerrain", Feed::HeightMap, "everything, from static buffers"},
-    {"chunkedlod", "SoChunkedLoDTerrain", Feed::HeightMap, "chunked level of detail, tiles of -g cells"},
-    {"clipmap", "SoGeometryClipmapTerrain", Feed::HeightMap, "geometry clipmaps, nested grids around the viewer"},
-    {"geomipmapping", "SoGeoMipmapTerrain", Feed::HeightMap, "geometrical mip-mapping, blocks of -g cells"},
-    {"roam", "SoROAMTerrain", Feed::HeightMap, "real-time optimally adapting meshes"},
-    {"indexedfaceset", "SoIndexedFaceSet", Feed::IndexedFaceSet, "Coin's own triangles, for comparison"},
-    {"quadmesh", "SoQuadMesh", Feed::QuadMesh, "Coin's own grid, for comparison"},
+    {"bruteforce", "SoBruteForceTerrain", Feed::HeightMap, "everything, from static buffers", "Brute force"},
+    {"chunkedlod", "SoChunkedLoDTerrain", Feed::HeightMap, "chunked level of detail, tiles of -g cells", "Chunked level of detail"},
+    {"clipmap", "SoGeometryClipmapTerrain", Feed::HeightMap, "geometry clipmaps, nested grids around the viewer",
+     "Geometry clipmaps"},
+    {"geomipmapping", "SoGeoMipmapTerrain", Feed::HeightMap, "geometrical mip-mapping, blocks of -g cells",
+     "Geometrical mip-mapping"},
+    {"roam", "SoROAMTerrain", Feed::HeightMap, "real-time optimally adapting meshes", "ROAM"},
+    {"indexedfaceset", "SoIndexedFaceSet", Feed::IndexedFaceSet, "Coin's own triangles, for comparison", "Coin's IndexedFaceSet"},
+    {"quadmesh", "SoQuadMesh", Feed::QuadMesh, "Coin's own grid, for comparison", "Coin's QuadMesh"},
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ struct Algorithm {
     const char* className;  ///< found by Coin by this name
     Feed feed;
     std::string_view help;
+    const char* title;  ///< in a menu
 };
 
 std::span<const Algorithm> algorithms();

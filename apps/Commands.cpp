@@ -75,10 +75,29 @@ std::vector<Command> makeCommands() {
     };
 }
 
+// One for each algorithm, with a number key, in the order of their table.
+std::vector<Command> algorithmCommands() {
+    std::vector<Command> rows;
+    for (const Algorithm& algorithm : algorithms()) {
+        const std::string key = std::to_string(rows.size() + 1), title = algorithm.title;
+        rows.push_back({"algorithm-" + std::string(algorithm.name), Menu::Terrain, title, key, "Draw the terrain with " + title,
+                        [&algorithm](MainWindow& w) { w.setAlgorithm(algorithm); },
+                        [&algorithm](const MainWindow& w) { return w.scene().shows(algorithm); },
+                        [&algorithm](const MainWindow& w) { return w.canSwitchTo(algorithm); }, true});
+    }
+    rows.push_back(line(Menu::Terrain));
+    return rows;
+}
+
 }  // namespace
 
 const std::vector<Command>& commands() {
-    static const std::vector<Command> table = makeCommands();
+    static const std::vector<Command> table = [] {
+        std::vector<Command> rows = algorithmCommands();
+        const std::vector<Command> others = makeCommands();
+        rows.insert(rows.end(), others.begin(), others.end());
+        return rows;
+    }();
     return table;
 }
 

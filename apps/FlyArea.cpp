@@ -65,6 +65,11 @@ void FlyArea::sceneChanged(bool keepCamera) {
         camera_.setPose(pose);
         scene_.setPose(pose);
     }
+    terrainChanged();
+}
+
+void FlyArea::terrainChanged() {
+    frameMs_ = intervalMs_ = 0.0;
     drawnScene_ = 0;
     textMs_ = 0.0;
     wake();

@@ -48,6 +48,8 @@ public:
     /// Whether the program ends with its animation: then nothing may disturb it.
     bool endsByItself() const { return ends_; }
 
+    /// Another node draws the terrain.
+    void terrainChanged();
     /// The scene has been replaced. Unless the camera is kept, it goes to the new scene's home.
     void sceneChanged(bool keepCamera);
     /// Draws and follows the scene again, after something has changed.

@@ -140,6 +140,20 @@ void MainWindow::toggleFullScreen() {
     area_->takeFocus();
 }
 
+void MainWindow::setAlgorithm(const Algorithm& algorithm) {
+    if (scene_.shows(algorithm)) return;
+    Options now = options_;
+    scene_.readFields(now);
+    if (auto problem = scene_.setAlgorithm(algorithm, now)) return fail(*problem);
+    now.algorithm = &algorithm;
+    if (scene_.isHeightMap()) options_ = now;
+    area_->terrainChanged();
+}
+
+bool MainWindow::canSwitchTo(const Algorithm& algorithm) const {
+    return canOpen() && scene_.offers(algorithm);
+}
+
 void MainWindow::showKeys() {
     if (!keys_) keys_ = makeKeysDialog(this);
     keys_->show();

@@ -42,6 +42,9 @@ public:
     void setTexture(const std::string& path);  ///< empty: none
     bool canOpen() const;
     bool canTexture() const;
+    /// Draws the terrain with another algorithm; camera, texture and settings stay.
+    void setAlgorithm(const Algorithm& algorithm);
+    bool canSwitchTo(const Algorithm& algorithm) const;
     /// A message in the status bar, for some seconds.
     void say(const std::string& message);
     void toggleFullScreen();
@@ -68,7 +71,7 @@ private:
     void placeWindow();
     void fail(const terrain::Error& problem);
     bool showScene(const Options& next, bool keepCamera);
-    void openRecent(const RecentFile& file);
+    void openFile(const RecentFile& file);
     void noteFile();
     void fillRecentFiles();
     QString folder() const;

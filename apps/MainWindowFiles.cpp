@@ -81,6 +81,17 @@ Options withoutFile(Options options) {
     return options;
 }
 
+// A scene file says itself how it is drawn.
+Options forScene(Options options) {
+    options.algorithm = nullptr;
+    options.frustumCulling = false;
+    options.pixelError.reset();
+    for (auto* value :
+         {&options.triangleCount, &options.tileSize, &options.clipmapSize, &options.clipmapLevels, &options.detailLevels})
+        value->reset();
+    return options;
+}
+
 }  // namespace
 
 void MainWindow::fail(const Error& problem) {
@@ -89,7 +100,7 @@ void MainWindow::fail(const Error& problem) {
 }
 
 bool MainWindow::showScene(const Options& next, bool keepCamera) {
-    auto built = Scene::build(next);
+    auto built = Scene::build(next.scene.empty() ? next : forScene(next));
     if (!built) {
         fail(built.error());
         return false;
@@ -115,31 +126,22 @@ void MainWindow::noteFile() {
 
 void MainWindow::openFiles(const std::vector<std::string>& paths) {
     if (area_->endsByItself()) return;
-    Options next = withoutFile(options_);
-    std::string picture;
+    std::string scene, map, picture;
     for (const std::string& path : paths) {
         const FileKind kind = fileKind(path);
-        if (kind == FileKind::Picture)
-            picture = path;
-        else
-            (kind == FileKind::Scene ? next.scene : next.heightMap) = path;
+        (kind == FileKind::Picture ? picture : kind == FileKind::Scene ? scene : map) = path;
     }
-    if (!next.namesTerrain() && !picture.empty() && !options_.heightMap.empty()) return setTexture(picture);
-    if (!next.namesTerrain()) std::swap(next.heightMap, picture);
-    if (!next.scene.empty()) {
-        next.heightMap.clear();
-        next.algorithm = nullptr;
-        picture.clear();
-    }
-    next.texture = picture;
-    if (next.namesTerrain()) showScene(next, false);
+    if (!scene.empty()) return openFile({scene, "", {}, {}});
+    if (map.empty() && !picture.empty() && scene_.isHeightMap()) return setTexture(picture);
+    if (map.empty()) std::swap(map, picture);
+    if (!map.empty()) openFile({map, picture, {}, {}});
 }
 
-void MainWindow::openRecent(const RecentFile& file) {
+void MainWindow::openFile(const RecentFile& file) {
+    if (scene_.isHeightMap()) scene_.readFields(options_);
     Options next = withoutFile(options_);
-    const bool isScene = fileKind(file.path) == FileKind::Scene;
-    (isScene ? next.scene : next.heightMap) = file.path;
-    if (isScene) next.algorithm = nullptr;
+    (fileKind(file.path) == FileKind::Scene ? next.scene : next.heightMap) = file.path;
+    if (!next.heightMap.empty() && !scene_.isHeightMap()) next.frustumCulling = true;
     next.texture = file.texture;
     next.rawSize = file.rawSize;
     next.rawType = file.rawType;
@@ -180,7 +182,7 @@ bool MainWindow::canOpen() const {
 }
 
 bool MainWindow::canTexture() const {
-    return canOpen() && !options_.heightMap.empty();
+    return canOpen() && scene_.isHeightMap();
 }
 
 void MainWindow::fillRecentFiles() {
@@ -188,7 +190,7 @@ void MainWindow::fillRecentFiles() {
     for (const RecentFile& file : settings_.recentFiles()) {
         std::string title = nameOf(file.path);
         if (!file.texture.empty()) title += " with " + nameOf(file.texture);
-        QAction* action = recent_->addAction(text(title).replace('&', "&&"), this, [this, file] { openRecent(file); });
+        QAction* action = recent_->addAction(text(title).replace('&', "&&"), this, [this, file] { openFile(file); });
         action->setStatusTip(text(file.path));
     }
     recent_->setEnabled(!recent_->isEmpty() && canOpen());

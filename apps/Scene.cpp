@@ -126,7 +126,7 @@ bool Scene::isComplete() const {
 
 terrain::Result<std::unique_ptr<ErrorMeter>> Scene::makeErrorMeter() {
     if (!grid_) return terrain::Error{"--measure-error", "a terrain over an SoHeightMap", "none"};
-    SoNode* parent = terrainPath_->getNodeFromTail(1);
+    SoNode* parent = static_cast<SoFullPath*>(terrainPath_.get())->getNodeFromTail(1);
     return std::make_unique<ErrorMeter>(*grid_, static_cast<SoGroup*>(parent), terrain_);
 }
 

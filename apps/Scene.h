@@ -1,6 +1,7 @@
 // The scene graph that SoTerrainTest shows, built from options.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,7 +21,12 @@
 #include "TerrainGrid.h"
 #include "base/Result.h"
 
+class SoSearchAction;
+
 namespace app {
+
+/// The path to the first node that an SoSearchAction with these settings finds, inside of node kits too; null without one.
+NodePtr<SoPath> findNode(SoNode& root, const std::function<void(SoSearchAction&)>& wanted);
 
 /// Sky behind every terrain.
 constexpr float skyColor[3] = {0.45f, 0.6f, 0.85f};
@@ -44,6 +50,21 @@ public:
     /// The grid that the terrain shows, when it is known.
     const std::optional<TerrainGrid>& grid() const { return grid_; }
 
+    /// Whether it was built over a height map, rather than read from a scene file.
+    bool isHeightMap() const { return material_ != nullptr; }
+
+    /// Whether the terrain can be drawn so: a height map always, but for maps too large for Coin's own shapes; of a scene file what
+    /// takes the same nodes before it.
+    bool offers(const Algorithm& algorithm) const;
+    bool shows(const Algorithm& algorithm) const;
+    /// Draws the terrain so instead. Fields that both nodes have keep their values; others get what the options say. Error: it is
+    /// not offered, and nothing changes.
+    std::optional<terrain::Error> setAlgorithm(const Algorithm& algorithm, const Options& options);
+    /// Gives the terrain's fields the values that the options have. `tells`: options without effect are told on standard error.
+    void setFields(const Options& options, bool tells);
+    /// The other way round, for the fields that the terrain has.
+    void readFields(Options& options) const;
+
     /// Moves the camera, and its clipping planes when they are ours to choose.
     void setPose(const Pose& pose);
     Pose pose() const;
@@ -65,11 +86,20 @@ public:
 private:
     friend class SceneBuilder;
 
+    std::optional<terrain::Error> putTerrain(const Algorithm& algorithm, const Options& options);
+    void replaceTerrain(SoNode* fresh);
+    void addHeightMap(const Options& options);
+    std::optional<terrain::Error> addCoinArrays(SoSeparator& group, Feed feed, const std::string& name);
+    std::shared_ptr<const terrain::HeightSource> heightSource() const;
+    const TerrainGrid* completeGrid();
+
     NodePtr<SoSeparator> root_;
     SoCamera* camera_ = nullptr;
     SoDrawStyle* drawStyle_ = nullptr;
     SoMaterial* material_ = nullptr;  ///< of a height map
     NodePtr<SoTexture2> texture_;     ///< null without one
+    NodePtr<SoNode> heightMap_;       ///< the SoHeightMap before the terrain, once there is one
+    SoSeparator* group_ = nullptr;    ///< of a height map: holds the terrain
     SoNode* terrain_ = nullptr;
     NodePtr<SoPath> terrainPath_;  ///< from the root
     std::string algorithm_;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <Inventor/SbViewportRegion.h>
 #include <Inventor/SoDB.h>
@@ -8,18 +7,9 @@
 #include <Inventor/SoPath.h>
 #include <Inventor/actions/SoGetBoundingBoxAction.h>
 #include <Inventor/actions/SoSearchAction.h>
-#include <Inventor/errors/SoReadError.h>
 #include <Inventor/fields/SoSFBool.h>
-#include <Inventor/fields/SoSFFloat.h>
-#include <Inventor/fields/SoSFInt32.h>
-#include <Inventor/nodes/SoCoordinate3.h>
 #include <Inventor/nodes/SoDirectionalLight.h>
-#include <Inventor/nodes/SoIndexedFaceSet.h>
-#include <Inventor/nodes/SoNormal.h>
-#include <Inventor/nodes/SoNormalBinding.h>
 #include <Inventor/nodes/SoPerspectiveCamera.h>
-#include <Inventor/nodes/SoQuadMesh.h>
-#include <Inventor/nodes/SoTextureCoordinate2.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoTerrainShape.h>
 
@@ -40,16 +30,10 @@ public:
     Scene take() { return std::move(scene_); }
 
 private:
-    std::optional<Error> addTerrain(const Algorithm& algorithm);
-    void addHeightMap();
-    std::optional<Error> addCoinArrays(Feed feed);
     void addRoot();
     void addCamera();
-    void setFields();
     void waitForTiles();
-    template <class Field, class Value>
-    void setField(const char* flag, const char* name, const std::optional<Value>& value);
-    SoPath* find(SoType type, bool derived) const;
+    NodePtr<SoPath> find(SoType type) const;
     void chooseTerrain();
     std::optional<Error> checkHeightMaps() const;
     void readGridOfScene();
@@ -80,31 +64,6 @@ void SceneBuilder::addCamera() {
     scene_.setPose(scene_.home_);
 }
 
-// A flag that names a field the shape does not have is said to have no effect, and the program goes on.
-template <class Field, class Value>
-void SceneBuilder::setField(const char* flag, const char* name, const std::optional<Value>& value) {
-    if (!value || !scene_.terrain_) return;
-    if (auto* field = dynamic_cast<Field*>(scene_.terrain_->getField(name)))
-        field->setValue(*value);
-    else
-        std::fprintf(stderr, "SoTerrainTest: %s has no effect on %s\n", flag, scene_.algorithm_.c_str());
-}
-
-void SceneBuilder::setFields() {
-    const std::optional<float> error = options_.pixelError ? std::optional(float(*options_.pixelError)) : std::nullopt;
-    setField<SoSFFloat>("-e", "pixelError", error);
-    setField<SoSFInt32>("-r", "triangleCount", options_.triangleCount);
-    setField<SoSFInt32>("-g", "tileSize", options_.tileSize);
-    setField<SoSFInt32>("--clipmap-size", "clipmapSize", options_.clipmapSize);
-    setField<SoSFInt32>("--levels", "levels", options_.clipmapLevels);
-    setField<SoSFInt32>("--detail", "detailLevels", options_.detailLevels);
-    if (options_.frustumCulling)
-        setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(TRUE));
-    else if (options_.scene.empty() && scene_.terrain_->getField("frustumCulling")) {
-        setField<SoSFBool>("-c", "frustumCulling", std::optional<SbBool>(FALSE));
-    }
-}
-
 // Pictures and measured errors are those of complete frames, however long tiles take.
 void SceneBuilder::waitForTiles() {
     if (options_.output.empty() && !options_.measureError) return;
@@ -117,61 +76,6 @@ void SceneBuilder::waitForTiles() {
         SoNode* node = static_cast<SoFullPath*>(found[i])->getTail();
         if (auto* background = dynamic_cast<SoSFBool*>(node->getField("background"))) background->setValue(FALSE);
     }
-}
-
-void SceneBuilder::addHeightMap() {
-    const TerrainGrid& grid = *scene_.grid_;
-    auto* map = new SoHeightMap;
-    map->filename = options_.heightMap.c_str();
-    map->spacing.setValue(float(grid.spacing.x), float(grid.spacing.y));
-    map->heightScale = float(grid.heightScale);
-    map->heightOffset = float(grid.heightOffset);
-    if (options_.channel) map->channel = *options_.channel;
-    if (options_.rawSize) map->rawSize.setValue(options_.rawSize->x, options_.rawSize->y);
-    if (options_.rawType) map->rawType = int(*options_.rawType);
-    scene_.root_->addChild(map);
-}
-
-std::optional<Error> SceneBuilder::addCoinArrays(Feed feed) {
-    const TerrainGrid& grid = *scene_.grid_;
-    if (!grid.source->map() || double(grid.columns) * grid.rows > maxCoinSamples) {
-        return Error{options_.heightMap, "a map that fits into memory and 32-bit indices, for Coin's own shapes",
-                     std::to_string(grid.columns) + "x" + std::to_string(grid.rows)};
-    }
-    SoCoordinate3* coordinates = makeCoordinates(grid);
-    auto* binding = new SoNormalBinding;
-    binding->value = feed == Feed::QuadMesh ? SoNormalBinding::PER_VERTEX : SoNormalBinding::PER_VERTEX_INDEXED;
-    scene_.root_->addChild(coordinates);
-    scene_.root_->addChild(binding);
-    scene_.root_->addChild(makeNormals(*coordinates, grid.columns, grid.rows));
-    const glm::dvec2 step(1.0 / (grid.columns - 1), 1.0 / (grid.rows - 1));
-    scene_.root_->addChild(makeTextureCoordinates(grid.columns, grid.rows, step));
-    return std::nullopt;
-}
-
-std::optional<Error> SceneBuilder::addTerrain(const Algorithm& algorithm) {
-    scene_.algorithm_ = algorithm.name;
-    if (algorithm.feed == Feed::HeightMap)
-        addHeightMap();
-    else if (auto problem = addCoinArrays(algorithm.feed))
-        return problem;
-    if (algorithm.feed == Feed::QuadMesh)
-        scene_.terrain_ = makeQuadMesh(*scene_.grid_);
-    else if (algorithm.feed == Feed::IndexedFaceSet)
-        scene_.terrain_ = makeFaceSet(*scene_.grid_);
-    else {
-        const SoType type = SoType::fromName(algorithm.className);
-        if (!type.canCreateInstance()) return Error{"-a", "an algorithm of this build", std::string(algorithm.name)};
-        scene_.terrain_ = static_cast<SoNode*>(type.createInstance());
-    }
-    auto* group = new SoSeparator;
-    group->addChild(scene_.terrain_);
-    scene_.root_->addChild(group);
-    auto* path = new SoPath(scene_.root_.get());
-    path->append(group);
-    path->append(scene_.terrain_);
-    scene_.terrainPath_ = NodePtr(path);
-    return std::nullopt;
 }
 
 std::optional<Error> SceneBuilder::fromHeightMap() {
@@ -192,32 +96,23 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     scene_.material_ = new SoMaterial;
     scene_.root_->addChild(scene_.material_);
     if (auto problem = scene_.setTexture(options_.texture)) return problem;
-    if (auto problem = addTerrain(options_.algorithm ? *options_.algorithm : *findAlgorithm("roam"))) return problem;
-    setFields();
+    const Algorithm& algorithm = options_.algorithm ? *options_.algorithm : *findAlgorithm("roam");
+    if (auto problem = scene_.putTerrain(algorithm, options_)) return problem;
+    scene_.setFields(options_, true);
     waitForTiles();
-    // The node has read the file itself; a second copy is kept only for those who need it.
-    if (scene_.terrain_->isOfType(SoTerrainShape::getClassTypeId()) && !options_.measureError) scene_.grid_->source.reset();
     return std::nullopt;
 }
 
-SoPath* SceneBuilder::find(SoType type, bool derived) const {
-    SoSearchAction search;
-    search.setType(type, derived);
-    search.setInterest(SoSearchAction::FIRST);
-    search.apply(scene_.root_.get());
-    SoPath* path = search.getPath();
-    if (path) path->ref();
-    return path;
+NodePtr<SoPath> SceneBuilder::find(SoType type) const {
+    return findNode(*scene_.root_.get(), [type](SoSearchAction& search) { search.setType(type); });
 }
 
 // The first of our shapes, or else the first shape.
 void SceneBuilder::chooseTerrain() {
-    SoPath* path = find(SoTerrainShape::getClassTypeId(), true);
-    if (!path) path = find(SoShape::getClassTypeId(), true);
-    if (!path) return;
-    scene_.terrainPath_ = NodePtr(path);
-    path->unref();
-    scene_.terrain_ = static_cast<SoFullPath*>(path)->getTail();
+    scene_.terrainPath_ = find(SoTerrainShape::getClassTypeId());
+    if (!scene_.terrainPath_) scene_.terrainPath_ = find(SoShape::getClassTypeId());
+    if (!scene_.terrainPath_) return;
+    scene_.terrain_ = static_cast<SoFullPath*>(scene_.terrainPath_.get())->getTail();
     scene_.algorithm_ = scene_.terrain_->getTypeId().getName().getString();
 }
 
@@ -240,11 +135,9 @@ std::optional<Error> SceneBuilder::checkHeightMaps() const {
 
 // A scene whose terrain stands on a file can be measured against that file.
 void SceneBuilder::readGridOfScene() {
-    SoPath* path = find(SoHeightMap::getClassTypeId(), true);
+    const NodePtr<SoPath> path = find(SoHeightMap::getClassTypeId());
     if (!path || !scene_.terrain_) return;
-    const NodePtr<SoPath> held(path);
-    path->unref();
-    const auto* node = static_cast<SoHeightMap*>(static_cast<SoFullPath*>(path)->getTail());
+    const auto* node = static_cast<SoHeightMap*>(static_cast<SoFullPath*>(path.get())->getTail());
     const SbVec2f spacing = node->spacing.getValue(), origin = node->origin.getValue();
     if (origin != SbVec2f(0.0f, 0.0f)) return;
     terrain::HeightFileOptions how;
@@ -266,11 +159,8 @@ void SceneBuilder::readGridOfScene() {
 
 // The camera of the file, or one that sees everything: from the south and above where there is a terrain, as a viewer's elsewhere.
 void SceneBuilder::placeSceneCamera() {
-    SoPath* path = find(SoCamera::getClassTypeId(), true);
-    if (path) {
-        const NodePtr<SoPath> held(path);
-        path->unref();
-        scene_.camera_ = static_cast<SoCamera*>(static_cast<SoFullPath*>(path)->getTail());
+    if (const NodePtr<SoPath> path = find(SoCamera::getClassTypeId())) {
+        scene_.camera_ = static_cast<SoCamera*>(static_cast<SoFullPath*>(path.get())->getTail());
         scene_.ownClipping_ = scene_.camera_->nearDistance.isDefault() && scene_.camera_->farDistance.isDefault();
     } else {
         scene_.camera_ = new SoPerspectiveCamera;
@@ -294,15 +184,13 @@ std::optional<Error> SceneBuilder::fromFile() {
     if (!content) return Error{options_.scene, "an Inventor scene", "a file that Coin can't read"};
     addRoot();
     scene_.root_->addChild(content);
-    if (SoPath* light = find(SoLight::getClassTypeId(), true)) {
-        light->unref();
-    } else {
+    if (!find(SoLight::getClassTypeId())) {
         auto* sun = new SoDirectionalLight;
         sun->direction.setValue(0.5f, 0.5f, -1.0f);
         scene_.root_->insertChild(sun, 0);
     }
     chooseTerrain();
-    setFields();
+    scene_.setFields(options_, true);
     waitForTiles();
     SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
     bounds.apply(scene_.root_.get());

@@ -6,6 +6,7 @@
 #include <SoTerrain/SoGeometryClipmapTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoHeightMapElement.h>
+#include <SoTerrain/SoPerfGraph.h>
 #include <SoTerrain/SoROAMTerrain.h>
 #include <SoTerrain/SoTerrainDetail.h>
 #include <SoTerrain/SoTerrainDrape.h>
@@ -24,6 +25,7 @@ void SoTerrain::init()
     SoHeightMapElement::initClass();
     SoTerrainDetail::initClass();
     SoHeightMap::initClass();
+    SoPerfGraph::initClass();
     SoTerrainTextureElement::initClass();
     SoTerrainTexture::initClass();
     SoTerrainShape::initClass();

@@ -155,7 +155,6 @@ bool isMirrored(const terrain::SampleGrid & grid)
 {
     return glm::determinant(grid.localFromFrame()) < 0.0;
 }
-
 }  // namespace
 
 SoTerrainShape::Private::Private(SoTerrainShape * masterArg)
@@ -419,6 +418,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     statistics.errorPixels = view.report.errorPixels;
     statistics.memoryBytes = grids.bytes() + views.memoryBytes();
     statistics.bufferBytes = views.bufferBytes();
+    counters.publish(statistics);
     if (!statistics.converged && !again.isScheduled()) again.schedule();
 }
 

@@ -11,6 +11,7 @@
 #include <SoTerrain/SoTerrainShape.h>
 
 #include "GridCache.h"
+#include "TerrainCounters.h"
 #include "TerrainViews.h"
 
 class StateAttributes;
@@ -41,6 +42,7 @@ public:
     TerrainViews views;
     std::uint64_t meshVersion = 0;  ///< meshes of an earlier one are replaced
     SoTerrainStatistics statistics;
+    TerrainCounters counters;
     std::set<std::string> warned;
     SoOneShotSensor again;  ///< asks for another frame while a mesh has not converged
 };

@@ -85,6 +85,13 @@ moved() {
     [ "$(cmp -l "$SCRATCH/$1.ppm" "$SCRATCH/$2.ppm" | wc -l)" -gt 20000 ]
 }
 
+# same A B: few values of the two screens differ by much
+same() {
+    [ "$(cmp -l "$SCRATCH/$1.ppm" "$SCRATCH/$2.ppm" |
+        awk '{ a = int($2 / 100) * 64 + int($2 / 10) % 10 * 8 + $2 % 10; b = int($3 / 100) * 64 + int($3 / 10) % 10 * 8 + $3 % 10
+               if (a - b > 40 || b - a > 40) ++n } END { print n + 0 }')" -lt 20000 ]
+}
+
 press() {
     xdotool keydown "$1"
     sleep 0.5

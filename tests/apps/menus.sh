@@ -72,6 +72,38 @@ close_window
 grep -q 'other' "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" && fail "a file that was not opened is remembered"
 grep -q 'scene.iv' "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" || fail "a file that was opened is not remembered"
 
+# Number keys exchange the algorithm; the camera and the settings stay: the picture hardly changes.
+open_window -h "$SCRATCH/map.raw" -t "$SCRATCH/colours.ppm" -c -e 0.5 --no-settings
+press w
+xdotool key plus
+says 'of 0.62 px' || fail "no pixel error of 0.62: $(title)"
+shot roam
+press Tab
+shot home
+same roam home && fail "two views pass for the same"
+press w
+xdotool key plus key minus
+shot roam
+number=0
+for name in bruteforce chunkedlod clipmap geomipmapping roam indexedfaceset quadmesh roam; do
+    number=$((number + 1))
+    [ $number = 8 ] && number=5
+    xdotool key $number
+    says "^SoTerrainTest: $name " || fail "key $number does not show $name: $(title)"
+    shot $name
+    same roam $name || fail "another picture with $name"
+done
+says 'of 0.62 px.*map.raw' || fail "the pixel error is lost on the way: $(title)"
+title | grep -q culling && fail "culling is lost on the way"
+close_window
+open_window --scene "$SCRATCH/scene.iv" --no-settings
+xdotool key 5
+says 'SoROAMTerrain .*of 3.00 px' || fail "the node of a scene is not exchanged: $(title)"
+xdotool key 7
+sleep 0.5
+title | grep -q SoROAMTerrain || fail "a scene without coordinates gets Coin's shape: $(title)"
+close_window
+
 # A run that is measured remembers nothing, nor does one without settings.
 cp "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" "$SCRATCH/before"
 expect 0 timeout 60 "$TEST" -h "$SCRATCH/other map.raw" --frames 3 --stats

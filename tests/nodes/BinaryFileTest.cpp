@@ -12,6 +12,7 @@
 #include <Inventor/nodes/SoSphere.h>
 
 #include <SoTerrain/SoHeightMap.h>
+#include <SoTerrain/SoPerfGraph.h>
 #include <SoTerrain/SoTerrainDrape.h>
 #include <SoTerrain/SoTerrainKit.h>
 #include <SoTerrain/SoTerrainPlacement.h>
@@ -58,7 +59,8 @@ std::vector<Ref<SoSeparator>> scenes() {
     kit->alternateRep = cube();
     static_cast<SoMaterial*>(kit->getPart("material", TRUE))->shininess = 0.75f;
     auto* placement = new SoTerrainPlacement;
-    return {sceneWith(placement, "point 3 4 align TRUE verticesPerRow 9"),
+    return {sceneWith(new SoPerfGraph, "counter [ \"fps\", \"\" ] position -8 4.5 on FALSE"),
+            sceneWith(placement, "point 3 4 align TRUE verticesPerRow 9"),
             sceneWith(drape, "point [ 1 2, 3 4.5 ] numVertices [ 1, 1 ] offset 2.5 closed TRUE"),
             sceneWith(kit, "algorithm GEO_MIPMAP heightMap SoHeightMap { heightScale 3 }")};
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <regex>
@@ -72,6 +73,21 @@ bool isPrivatePart(SoNode* node, const SbName& name) {
     return part > 0 && !catalog->isPublic(part);
 }
 
+/// On one line, and numbers as people write them: 0.4 rather than 0.40000001.
+std::string asWritten(const std::string& value) {
+    static const std::regex number("-?[0-9]+\\.[0-9]{6,}");
+    const std::string line = std::regex_replace(value, std::regex("\\s+"), " ");
+    std::string text;
+    auto rest = line.cbegin();
+    for (std::sregex_iterator i(line.begin(), line.end(), number), end; i != end; ++i) {
+        char rounded[32];
+        std::snprintf(rounded, sizeof rounded, "%.6g", std::stod((*i)[0]));
+        text.append(rest, (*i)[0].first).append(rounded);
+        rest = (*i)[0].second;
+    }
+    return text.append(rest, line.cend());
+}
+
 /// The same of a new node: its fields in the order in which they are written, with their defaults; numbers are decimal. A node that
 /// a kit makes is as it is written, "Class { }".
 std::vector<std::string> actual(SoNode* node) {
@@ -84,7 +100,7 @@ std::vector<std::string> actual(SoNode* node) {
         if (isPrivatePart(node, name)) continue;
         SbString value;
         fields[i]->get(value);
-        std::string text = value.getString();
+        std::string text = asWritten(value.getString());
         if (fields[i]->isOfType(SoSFNode::getClassTypeId())) text = nameOf(static_cast<SoSFNode*>(fields[i])->getValue());
         if (fields[i]->isOfType(SoSFUInt32::getClassTypeId())) text = std::to_string(static_cast<SoSFUInt32*>(fields[i])->getValue());
         if (text == "[  ]") text = "[ ]";
