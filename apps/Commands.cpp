@@ -22,6 +22,10 @@ Command::Ask has(const char* field) {
     return [field](const MainWindow& window) { return window.area().hasField(field); };
 }
 
+bool mayReplay(const MainWindow& window) {
+    return !window.area().endsByItself();
+}
+
 // A new command is one row here: its menu entry, its key and its line in Help > Keys follow from it. What it does belongs into
 // FlyArea (what is seen), Scene (what is drawn) or MainWindow (dialogs), or a file of its own; the row calls it. Afterwards the
 // picture, the menus' check marks and the status bar are brought up to date by MainWindow::run(). Then tell of the key in Help.cpp
@@ -64,11 +68,15 @@ std::vector<Command> makeCommands() {
         {"all-levels", Menu::Terrain, "&All levels", "0", "As many levels of a clipmap as the view needs",
          [](W& w) { w.area().changeLevels(0); }, nullptr, has("activeLevels")},
 
-        {"record", Menu::Benchmark, "&Record flight", "R", "Record the camera to soterrain-flight.csv, until R is pressed again",
+        {"record", Menu::Benchmark, "&Record flight", "R",
+         "Record the camera until R is pressed again, then write soterrain-flight.csv (-2, -3 ... when it is there)",
          [](W& w) { w.area().toggleRecord(); }, [](const W& w) { return w.area().isRecording(); }},
-        {"play", Menu::Benchmark, "&Play record", "P", "Play the record, with a profile in soterrain-replay.csv",
-         [](W& w) { w.area().togglePlay(); }, [](const W& w) { return w.area().isReplaying(); },
-         [](const W& w) { return !w.area().endsByItself(); }},
+        {"play", Menu::Benchmark, "&Play record", "P", "Replay the latest record, with a profile in soterrain-replay.csv",
+         [](W& w) { w.area().replay(1); }, [](const W& w) { return w.area().isReplaying() && !w.area().isBenchmarking(); },
+         mayReplay},
+        {"benchmark", Menu::Benchmark, "&Five repetitions", "Shift+P",
+         "Replay the latest record five times: means of every frame and a summary in soterrain-benchmark files",
+         [](W& w) { w.area().replay(5); }, [](const W& w) { return w.area().isBenchmarking(); }, mayReplay},
 
         {"keys", Menu::Help, "&Keys", "F1", "Show what the keys do", [](W& w) { w.showKeys(); }},
         {"about", Menu::Help, "&About SoTerrainTest", "", "Versions and graphics", [](W& w) { w.showAbout(); }},

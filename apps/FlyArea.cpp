@@ -43,8 +43,12 @@ FlyArea::FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& 
     all->addChild(statusLine_.root());
     setBackgroundColor(SbColor(skyColor));
     setSceneGraph(all);
+    timer_.setTimerType(Qt::PreciseTimer);
     QObject::connect(&timer_, &QTimer::timeout, [this] { tick(); });
-    if (options.animate || options.frames || !options.flight.empty()) play(animation_);
+    if (options.replays() && ends_)
+        startReplay(animation_, options.repeat.value_or(1), options.repeat.has_value());
+    else if (options.animates())
+        play(animation_);
     wake();
 }
 
@@ -95,7 +99,7 @@ void FlyArea::runTimer() {
 
 void FlyArea::tick() {
     const double now = nowMs();
-    if (play_) {
+    if (play_ || replay_) {
         advance(now);
     } else if (camera_.step(float((now - lastTickMs_) * 1e-3))) {
         scene_.setPose(camera_.pose());
@@ -111,34 +115,50 @@ void FlyArea::tick() {
         if (showsStatus_) statusLine_.setText(text);
         if (tellStatus_) tellStatus_(text);
     }
-    if (!play_ && !textDue_ && now > activeUntilMs_) timer_.stop();
+    if (!play_ && !replay_ && !textDue_ && now > activeUntilMs_) timer_.stop();
 }
 
 // The animation's clock starts with its first frame, after the window and the first upload.
 void FlyArea::advance(double now) {
     if (due_ || renderer_.empty()) return;
-    if (play_->last < 0) play_->startMs = now;
+    if (replay_) return advanceReplay(now);
     const FrameSchedule& schedule = play_->animation.schedule;
+    if (play_->last < 0) {
+        play_->startMs = now;
+        took_ = {schedule.durationMs};
+    }
     const double elapsed = now - play_->startMs;
     const auto next = schedule.next(play_->last, elapsed);
     // A frame that is not synchronised has its duration too, but a late one delays all that follow.
-    const bool early =
-        next && (schedule.synchronized ? next->waitMs > 0.5 : play_->last >= 0 && now - lastDueMs_ < schedule.stepMs - 0.5);
-    if (early || (!next && schedule.synchronized && elapsed < schedule.durationMs)) return;
+    double wait = 0.0;
+    if (schedule.synchronized)
+        wait = next ? next->waitMs : schedule.durationMs - elapsed;
+    else if (next && play_->last >= 0)
+        wait = lastDueMs_ + schedule.stepMs - now;
+    if (wait > 0.5) {
+        // The end of a synchronised animation does not wait for the next tick.
+        if (wait < tickMs) QTimer::singleShot(int(std::ceil(wait)), Qt::PreciseTimer, &timer_, [this] { tick(); });
+        return;
+    }
     if (!next) return endOfAnimation();
     play_->last = next->frame;
-    const double time = schedule.time(next->frame), length = play_->animation.flight.duration();
-    scene_.setPose(play_->animation.flight.at(time > length && length > 0.0 ? std::fmod(time, length) : time));
+    scene_.setPose(play_->animation.pose(next->frame));
     due_ = true;
     lastDueMs_ = now;
     scheduleRedraw();
 }
 
 void FlyArea::endOfAnimation() {
-    if (replayProfile_) {
-        endReplay("played");
-        takeOver();
+    if (isReplaying()) {
+        camera_.setPose(scene_.pose());
+        endReplay(true);
+        wake();
     } else if (ends_) {
+        if (play_) {
+            took_.lastedMs = nowMs() - play_->startMs;
+            log_.animation(took_);
+        }
+        endReplay(true);
         logging_ = false;  // a redraw that still comes is no frame of the animation
         timer_.stop();
         play_.reset();
@@ -150,8 +170,8 @@ void FlyArea::endOfAnimation() {
 
 // The user steers from where the animation is.
 void FlyArea::takeOver() {
-    if (play_ && !ends_) {
-        endReplay("stopped");
+    if ((play_ || replay_) && !ends_) {
+        endReplay(false);
         play_.reset();
         camera_.setPose(scene_.pose());
     }
@@ -159,22 +179,25 @@ void FlyArea::takeOver() {
 }
 
 void FlyArea::actualRedraw() {
-    const double start = nowMs();
+    const Stopwatch watch;
+    // What refreshes the window between two frames of a replay leaves their meshes alone.
+    scene_.holdMeshes(replay_ && !due_ && !renderer_.empty());
     SoQtRenderArea::actualRedraw();
+    scene_.holdMeshes(false);
     noteScene();
-    if (logging_ || replayProfile_) glFinish();
-    const double end = nowMs();
+    if (logging_ || replay_) glFinish();
+    const Duration took = watch.elapsed();
     if (renderer_.empty()) {
         const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
         renderer_ = name ? name : "unknown";
-        log_.setStart(loadMs_, end - start);
+        log_.setStart(loadMs_, took.wallMs);
         return;
     }
-    frameMs_ = smooth(frameMs_, end - start);
-    const double interval = end - lastRedrawMs_;
+    frameMs_ = smooth(frameMs_, took.wallMs);
+    const double end = nowMs(), interval = end - lastRedrawMs_;
     intervalMs_ = interval < restMs ? smooth(intervalMs_, interval) : 0.0;
     lastRedrawMs_ = end;
-    logFrame(end - start);
+    logFrame(took);
 }
 
 // A mesh may converge long after the last motion, so every frame of a scene that changed calls for a new text. The frame that
@@ -191,25 +214,30 @@ void FlyArea::sizeChanged(const SbVec2s& size) {
     SoQtRenderArea::sizeChanged(size);
     drawnScene_ = 0;
     resized_ = true;
+    // Frames of another size have other meshes.
+    if (isReplaying() && replay_->isMeasured()) takeOver();
     wake();
 }
 
-void FlyArea::logFrame(double frameMs) {
-    if (play_ && !due_) return;  // a redraw of the same frame, for the window's sake
-    frame_ = play_ ? play_->last : frame_ + 1;
-    const double time = play_ ? play_->animation.schedule.time(frame_) : nowMs() - startMs_;
+glm::ivec2 FlyArea::sizePixels() const {
+    const SbVec2s size = getViewportRegion().getViewportSizePixels();
+    return {size[0], size[1]};
+}
+
+void FlyArea::logFrame(const Duration& took) {
+    if ((play_ || replay_) && !due_) return;  // a redraw of the same frame, for the window's sake
     due_ = false;
-    if (recording_) recording_->push_back({time, scene_.pose()});
-    if (replayProfile_) {
-        FrameFigures figures = scene_.figures();
-        figures.frame = frame_;
-        figures.timeMs = time;
-        figures.frameMs = frameMs;
-        replayProfile_->write(figures);
-    }
-    if (!logging_) return;
-    log_.frame(frame_, time, frameMs, scene_);
-    if (!log_.measures(frame_)) return;
+    if (replay_) return logReplay(took);
+    frame_ = play_ ? play_->last : frame_ + 1;
+    const double now = nowMs(), time = play_ ? play_->animation.schedule.time(frame_) : now - startMs_;
+    if (play_) took_.longestFrameMs = std::max(took_.longestFrameMs, now - lastDueMs_);
+    if (recording_ && now - startMs_ > recording_->back().timeMs) recording_->push_back({now - startMs_, scene_.pose()});
+    if (logging_) logScene(frame_, time, took);
+}
+
+void FlyArea::logScene(int frame, double timeMs, const Duration& took) {
+    log_.frame(frame, timeMs, took, scene_);
+    if (!log_.measures(frame)) return;
     problem_ = log_.measure([this] {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         getGLRenderAction()->apply(scene_.root());

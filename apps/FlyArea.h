@@ -12,7 +12,8 @@
 
 #include "FlyCamera.h"
 #include "Options.h"
-#include "Profile.h"
+#include "FrameStatistics.h"
+#include "Replay.h"
 #include "RunLog.h"
 #include "Scene.h"
 #include "StatusLine.h"
@@ -36,15 +37,18 @@ public:
     void changeLevels(int by);
     void toggleConstantHeight();
     void goHome();
+    /// Records the camera, or writes down what was recorded.
     void toggleRecord();
-    void togglePlay();
+    /// Replays the latest record so many times, with means of more than one, or stops it.
+    void replay(int flights);
 
     bool hasField(const char* name) const;  ///< of the terrain node
     bool culling() const;
     bool fullDetail() const { return formerError_.has_value(); }
     bool constantHeight() const { return camera_.constantHeight(); }
     bool isRecording() const { return recording_.has_value(); }
-    bool isReplaying() const { return replayProfile_.has_value(); }
+    bool isReplaying() const { return replay_ && !ends_; }
+    bool isBenchmarking() const { return isReplaying() && replay_->flights() > 1; }
     /// Whether the program ends with its animation: then nothing may disturb it.
     bool endsByItself() const { return ends_; }
 
@@ -64,6 +68,8 @@ public:
     const std::optional<terrain::Error>& problem() const { return problem_; }
     /// Of the GL context; empty before the first frame.
     const std::string& renderer() const { return renderer_; }
+    /// Of the picture.
+    glm::ivec2 sizePixels() const;
 
 protected:
     void processEvent(QEvent* event) override;
@@ -85,10 +91,16 @@ private:
     void endOfAnimation();
     FlyCamera makeCamera();
     bool steer(const QKeyEvent& event, bool press);
-    void endReplay(const char* how);
+    std::optional<std::string> flightToReplay() const;
+    void startReplay(Animation animation, int flights, bool warmsUp);
+    void advanceReplay(double now);
+    void logReplay(const Duration& took);
+    void endReplay(bool isWhole);
+    void writeReplay(bool isBenchmark, bool isWhole);
     void takeOver();
     bool mouse(const QMouseEvent& event);
-    void logFrame(double frameMs);
+    void logFrame(const Duration& took);
+    void logScene(int frame, double timeMs, const Duration& took);
     std::string status() const;
 
     const Options& options_;
@@ -117,8 +129,10 @@ private:
     double lastDueMs_ = 0.0;            ///< when the latest frame of the animation was asked for
     std::optional<float> formerError_;  ///< pixel error before full detail
     std::optional<std::vector<TimedPose>> recording_;
-    std::vector<TimedPose> recorded_;
-    std::optional<ProfileWriter> replayProfile_;  ///< while P replays
+    std::string recorded_;            ///< file of the latest record
+    std::unique_ptr<Replay> replay_;  ///< drives the camera in place of play_
+    FrameStatistics replayed_;        ///< of a replay that the user asked for
+    AnimationTime took_;              ///< play_, so far
     std::string message_;
     std::optional<std::pair<int, int>> drag_;
     std::function<void(const std::string&)> tellStatus_;

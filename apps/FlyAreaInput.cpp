@@ -40,8 +40,6 @@ constexpr SteeringKey steeringKeys[] = {
 
 constexpr float errorStep = 1.25f;
 constexpr float radiansPerPixel = 0.004f;
-const char* const recordFile = "soterrain-flight.csv";
-const char* const replayFile = "soterrain-replay.csv";
 
 }  // namespace
 
@@ -138,48 +136,6 @@ void FlyArea::toggleDetail() {
     }
 }
 
-void FlyArea::toggleRecord() {
-    if (!recording_) {
-        recording_.emplace();
-        message_.clear();
-        return;
-    }
-    recorded_ = std::move(*recording_);
-    recording_.reset();
-    auto file = FlightWriter::open(recordFile);
-    bool written = bool(file);
-    if (written) {
-        for (const TimedPose& pose : recorded_) file.value().write(pose.timeMs, pose.pose);
-        written = file.value().close();
-    }
-    message_ = written ? std::string("recorded ") + recordFile : std::string("cannot write ") + recordFile;
-}
-
-void FlyArea::togglePlay() {
-    if (ends_) return;
-    if (play_) return takeOver();
-    auto flight = recorded_.empty() ? readFlightFile(recordFile) : terrain::Result<Flight>(keyFrameFlight(recorded_));
-    if (!flight) {
-        message_ = "nothing recorded";
-        return;
-    }
-    message_.clear();
-    if (auto profile = ProfileWriter::open(replayFile))
-        replayProfile_ = std::move(profile).value();
-    else
-        message_ = std::string("cannot write ") + replayFile;
-    const Flight path = std::move(flight).value();
-    play({path, FrameSchedule::make(path.duration(), options_.frameTime, std::nullopt, true)});
-}
-
-void FlyArea::endReplay(const char* how) {
-    if (!replayProfile_) return;
-    const bool written = replayProfile_->close();
-    replayProfile_.reset();
-    message_ = std::string(how) + (written ? ", profile in " : ", cannot write ") + replayFile;
-    std::fprintf(stderr, "SoTerrainTest: %s\n", message_.c_str());
-}
-
 bool FlyArea::mouse(const QMouseEvent& event) {
     if (!(event.buttons() & Qt::LeftButton)) {
         drag_.reset();
@@ -188,7 +144,7 @@ bool FlyArea::mouse(const QMouseEvent& event) {
     const std::pair<int, int> here(event.x(), event.y());
     if (drag_ && here != *drag_) {
         takeOver();
-        if (!play_) {
+        if (!play_ && !replay_) {
             camera_.look(float(drag_->first - here.first) * radiansPerPixel, float(drag_->second - here.second) * radiansPerPixel);
             scene_.setPose(camera_.pose());
         }

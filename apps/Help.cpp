@@ -35,8 +35,10 @@ Animation
   -v, --animate             play the animation: a circle over the terrain, or --flight. In a window it starts again at its
                             end, unless --frames, -p, --stats, --record or --measure-error wants an end: then the program ends too
       --flight FILE         fly along this CSV file: time_ms,x,y,z,qx,qy,qz,qw; linear between positions, spherical between
-                            orientations. Implies -v
-      --record FILE         write the camera of every frame in the same format
+                            orientations. Implies -v. Without -s every frame has all of its tiles and, on every run, the
+                            same triangles
+      --record FILE         write the camera of every frame in the same format, in place of what FILE held
+      --repeat N            fly N times, after once without measuring: -p, --stats and --summary give means
   -A, --animation-time MS   length of the animation (10000, or that of the flight, which is stretched to fit)
   -F, --frame-time MS       duration of a frame (40)
       --frames N            number of frames; without -F the whole animation is spread over them
@@ -44,8 +46,9 @@ Animation
 
 Output
   -p, --profile FILE        a CSV row for every frame: frame,time_ms,frame_ms,select_ms,upload_ms,draw_ms,triangles,
-                            patches,error_px,resident_bytes
+                            patches,error_px,resident_bytes; with --repeat means and frame_ms_min,frame_ms_max,cpu_ms
       --stats               a JSON object on standard output at the end
+      --summary FILE        the same into a file whose name ends in .json, or a line of figures under one of names (CSV)
       --measure-error K     every K frames measure the error on screen of every sample in view
       --offscreen[=WxH]     no window and no display (1024x768). One frame, unless -v, --flight or --frames asks for more. Without
                             -p, --stats, --measure-error and --output it prints one line of figures
@@ -59,6 +62,7 @@ Keys (the window's menus offer the same, and more)
   W S forward, back   A D left, right   Q E up, down   arrows turn   PgUp PgDn roll   mouse drag looks around   wheel: speed
   Keypad + -  pixel error         F  frustum culling      L  wireframe         Space  constant height over the ground
   Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
+  Shift+P  play it five times, and write means
   ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
   Left Alt+Enter, F11  full screen                        Esc  quit             F1  all keys
   1 to 7  another algorithm, in the order of -a's list
@@ -66,7 +70,9 @@ Keys (the window's menus offer the same, and more)
 
 Without -h and --scene the window shows the installed terrain, or waits for a file: File > Open, or one that is dropped on it.
 
-R writes the flight to soterrain-flight.csv, P the profile of its replay, as -p does, to soterrain-replay.csv.
+R writes soterrain-flight.csv; P replays the latest record, or else --flight, and writes its profile, as -p does, to
+soterrain-replay.csv; Shift+P replays it five times, after once without measuring, and writes soterrain-benchmark.csv,
+soterrain-benchmark-summary.csv and soterrain-benchmark.json. None takes the place of a file: the next is soterrain-flight-2.csv.
 
 Files of -h, -t and --scene that are not where they are named are looked for among the installed ones: -h terrain.png,
 -t terrain_texture.jpg, --scene terrain.iv.

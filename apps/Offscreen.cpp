@@ -2,8 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <thread>
 
@@ -16,6 +16,7 @@
 #include "Clock.h"
 #include "FrameName.h"
 #include "ImageFile.h"
+#include "Replay.h"
 #include "RunLog.h"
 
 namespace app {
@@ -46,12 +47,12 @@ public:
         action_.apply(scene_.root());
     }
 
-    /// Milliseconds that a whole frame takes.
-    double drawTimed() {
-        const double start = nowMs();
+    /// What a whole frame takes.
+    Duration drawTimed() {
+        const Stopwatch watch;
         draw();
         glFinish();
-        return nowMs() - start;
+        return watch.elapsed();
     }
 
     /// Draws until nothing is missing. False when that takes too long.
@@ -74,6 +75,7 @@ public:
     }
 
     std::optional<Error> animate(RunLog& log, const Animation& animation);
+    std::optional<Error> replay(RunLog& log, const Animation& animation);
 
 private:
     const Options& options_;
@@ -84,26 +86,44 @@ private:
 
 std::optional<Error> OffscreenRun::animate(RunLog& log, const Animation& animation) {
     const FrameSchedule& schedule = animation.schedule;
+    AnimationTime took{schedule.durationMs};
     const double start = nowMs();
     const auto wait = [](double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); };
     int last = -1;
     while (const auto next = schedule.next(last, nowMs() - start)) {
         last = next->frame;
         if (next->waitMs > 0.0) wait(next->waitMs);
-        // More frames than the animation has fly round again.
-        const double time = schedule.time(next->frame), length = animation.flight.duration();
-        scene_.setPose(animation.flight.at(time > length && length > 0.0 ? std::fmod(time, length) : time));
-        if (auto problem = frame(log, next->frame, time)) return problem;
+        const double begin = nowMs();
+        scene_.setPose(animation.pose(next->frame));
+        if (auto problem = frame(log, next->frame, schedule.time(next->frame))) return problem;
+        took.longestFrameMs = std::max(took.longestFrameMs, nowMs() - begin);
     }
     const double rest = schedule.durationMs - (nowMs() - start);
     if (schedule.synchronized && rest > 0.0) wait(rest);
+    took.lastedMs = nowMs() - start;
+    log.animation(took);
+    return std::nullopt;
+}
+
+std::optional<Error> OffscreenRun::replay(RunLog& log, const Animation& animation) {
+    Replay replay(scene_, animation, options_.repeat.value_or(1), options_.repeat.has_value());
+    while (replay.next()) {
+        if (replay.begins()) log.beginRepetition();
+        if (!replay.isMeasured()) {
+            drawTimed();
+        } else if (auto problem = frame(log, replay.frame(), replay.timeMs())) {
+            return problem;
+        }
+        replay.drawn();
+    }
+    if (!replay.startsComplete()) std::fprintf(stderr, "SoTerrainTest: %s\n", Replay::incompleteStart);
     return std::nullopt;
 }
 
 }  // namespace
 
 std::optional<Error> runOffscreen(const Options& options, Scene& scene, double startedMs) {
-    const bool animated = options.animate || options.frames || !options.flight.empty();
+    const bool animated = options.animates();
     auto animation = Animation::make(options, scene);
     if (!animation) return animation.error();
     if (animated) scene.setPose(animation.value().flight.at(0.0));
@@ -114,14 +134,16 @@ std::optional<Error> runOffscreen(const Options& options, Scene& scene, double s
 
     OffscreenRun run(options, scene, *context.value());
     const double loaded = nowMs() - startedMs;
-    log.value().setStart(loaded, run.drawTimed());
+    log.value().setStart(loaded, run.drawTimed().wallMs);
     if (!animated && !run.complete()) {
         std::fprintf(stderr, "SoTerrainTest: expected a complete picture within %.0f s, found parts of it still coarser\n",
                      patienceMs * 1e-3);
     }
-    auto problem = animated ? run.animate(log.value(), animation.value()) : run.frame(log.value(), 0, 0.0);
+    auto problem = options.replays() ? run.replay(log.value(), animation.value())
+                   : animated        ? run.animate(log.value(), animation.value())
+                                     : run.frame(log.value(), 0, 0.0);
     if (problem) return problem;
-    return log.value().finish(options, scene, context.value()->renderer());
+    return log.value().finish(options, scene, context.value()->renderer(), *options.offscreen);
 }
 
 }  // namespace app

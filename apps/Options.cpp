@@ -33,8 +33,10 @@ enum LongOption {
     RawSize,
     RawSamples,
     MeasureError,
+    Repeat,
     Stats,
     NoSettings,
+    Summary,
     Help,
     Version
 };
@@ -68,8 +70,10 @@ const option longOptions[] = {
     {"raw-size", required_argument, nullptr, RawSize},
     {"raw-type", required_argument, nullptr, RawSamples},
     {"measure-error", required_argument, nullptr, MeasureError},
+    {"repeat", required_argument, nullptr, Repeat},
     {"stats", no_argument, nullptr, Stats},
     {"no-settings", no_argument, nullptr, NoSettings},
+    {"summary", required_argument, nullptr, Summary},
     {"help", no_argument, nullptr, Help},
     {"version", no_argument, nullptr, Version},
     {nullptr, 0, nullptr, 0},
@@ -152,6 +156,7 @@ void Reader::take(int code, const char* value) {
     case Output:
     case FlightFile:
     case Record:
+    case Summary:
         takeFile(code, value);
         break;
     case 'A':
@@ -166,6 +171,7 @@ void Reader::take(int code, const char* value) {
     case HeightScale:
     case Channel:
     case MeasureError:
+    case Repeat:
         takeNumber(code, value);
         break;
     case Offscreen:
@@ -239,6 +245,9 @@ void Reader::takeFile(int code, const char* value) {
     case Record:
         options.record = value;
         break;
+    case Summary:
+        options.summary = value;
+        break;
     default:
         options.output = value;
         break;
@@ -279,6 +288,9 @@ void Reader::takeNumber(int code, const char* value) {
         break;
     case Frames:
         whole(code, value, 1, options.frames);
+        break;
+    case Repeat:
+        whole(code, value, 1, options.repeat);
         break;
     default:
         whole(code, value, 1, options.measureError);
@@ -340,8 +352,19 @@ void refuseOption(Reader& reader, int code, char* const argv[]) {
         reader.refuse(std::string("-") + char(optopt), "a known option", "an unknown one");
 }
 
+void checkRepetitions(Reader& reader) {
+    const Options& o = reader.options;
+    if (!o.repeat) return;
+    if (!o.animates()) reader.refuse("--repeat", "-v, --flight or --frames with it", "none of them");
+    if (o.synchronize) reader.refuse("--repeat", "every frame of each flight", "-s, which leaves some out");
+    if (!o.output.empty() || !o.record.empty() || o.measureError)
+        reader.refuse("--repeat", "frames that are measured alone", "--output, --record or --measure-error");
+}
+
 void checkCombination(Reader& reader) {
     const Options& o = reader.options;
+    checkRepetitions(reader);
+    if (!o.record.empty() && o.record == o.flight) reader.refuse("--record", "another file than --flight", o.record);
     if (!o.namesTerrain() && (o.offscreen || o.isMeasured() || !o.output.empty()) && !reader.problem)
         reader.problem = missingTerrain();
     if (!o.heightMap.empty() && !o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "both");

@@ -20,6 +20,7 @@ struct Options {
     std::string flight;                       ///< --flight
     std::string record;                       ///< --record
     std::string output;                       ///< --output
+    std::string summary;                      ///< --summary
     const Algorithm* algorithm = nullptr;     ///< -a; null: roam for a height map, whatever a scene file holds for a scene
     std::optional<double> animationTime;      ///< -A, milliseconds
     std::optional<double> frameTime;          ///< -F, milliseconds
@@ -30,6 +31,7 @@ struct Options {
     std::optional<int> clipmapLevels;         ///< --levels of a clipmap; 0: as many as cover the map
     std::optional<int> detailLevels;          ///< --detail, levels finer than the samples
     std::optional<int> frames;                ///< --frames
+    std::optional<int> repeat;                ///< --repeat, flights that are measured
     std::optional<int> measureError;          ///< --measure-error: every so many frames
     std::optional<glm::dvec2> spacing;        ///< --spacing
     std::optional<double> heightScale;        ///< --height-scale
@@ -49,7 +51,13 @@ struct Options {
     /// Whether there is something to show.
     bool namesTerrain() const { return !heightMap.empty() || !scene.empty(); }
     /// Whether the run is measured, and ends by itself: then nothing but the command line may have a say.
-    bool isMeasured() const { return frames || !profile.empty() || stats || measureError || !record.empty(); }
+    bool isMeasured() const {
+        return frames || !profile.empty() || stats || !summary.empty() || measureError || repeat || !record.empty();
+    }
+    /// Whether every frame of a flight is drawn complete, so that it has the same triangles whenever it is flown.
+    bool replays() const { return (!flight.empty() && !synchronize) || repeat; }
+    /// Whether there is more to draw than one picture.
+    bool animates() const { return animate || frames || !flight.empty(); }
 
     static constexpr double defaultAnimationTime = 10000.0;
     static constexpr double defaultFrameTime = 40.0;

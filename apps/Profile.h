@@ -1,13 +1,11 @@
-// What every frame cost: a row of CSV each, and a summary in JSON.
+// What every frame cost: a row of CSV each.
 #pragma once
 
 #include <cstdint>
 #include <fstream>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "MeasureError.h"
 #include "base/Result.h"
 
 namespace app {
@@ -17,6 +15,7 @@ struct FrameFigures {
     int frame = 0;
     double timeMs = 0.0;   ///< time in the animation
     double frameMs = 0.0;  ///< wall clock, until GL has finished
+    double cpuMs = 0.0;    ///< processor time of all threads meanwhile; not written by -p for a single flight
     std::uint64_t triangles = 0;
     struct Terrain {  ///< known for this project's own nodes only
         double selectMs = 0.0;
@@ -31,41 +30,29 @@ struct FrameFigures {
     std::optional<Terrain> terrain;
 };
 
-/// Writes -p's file.
+/// One frame of a flight that was flown several times.
+struct MeanFrame {
+    FrameFigures mean;     ///< of everything; the worst where it is a bound or a number of bytes
+    double leastMs = 0.0;  ///< of frameMs
+    double mostMs = 0.0;
+};
+
+/// Writes -p's file: of one flight as it goes, or of several at their end.
 class ProfileWriter {
 public:
+    enum class Rows { Frames, Means };  ///< rows of means have three columns more: frame_ms_min, frame_ms_max, cpu_ms
+
     /// Error: the file can't be written.
-    static terrain::Result<ProfileWriter> open(const std::string& path);
+    static terrain::Result<ProfileWriter> open(const std::string& path, Rows rows = Rows::Frames);
     void write(const FrameFigures& figures);
+    void write(const MeanFrame& frame);
     /// False when something could not be written.
     bool close();
 
 private:
+    void writeCells(const FrameFigures& figures);
+
     std::ofstream file_;
-};
-
-/// Collects frames for --stats.
-class FrameStatistics {
-public:
-    void add(const FrameFigures& figures);
-    void add(const ErrorSample& error) { errors_.merge(error); }
-    void setStart(double loadMs, double firstFrameMs);
-    /// The JSON object, indented.
-    std::string json(const std::string& algorithm, const std::string& renderer) const;
-    /// Frames, their median time, mean triangles and, where the shape tells it, the greatest error bound and how many frames were
-    /// not complete, in one line.
-    std::string line() const;
-    const ErrorSample& errors() const { return errors_; }
-
-private:
-    std::vector<double> frame_, select_, upload_, draw_, triangles_;
-    std::optional<double> errorBound_;  ///< greatest of the frames that have one
-    std::uint64_t unfinished_ = 0;
-    std::uint64_t memoryBytes_ = 0;
-    std::uint64_t bufferBytes_ = 0;
-    double loadMs_ = 0.0;
-    double firstFrameMs_ = 0.0;
-    ErrorSample errors_;
 };
 
 }  // namespace app

@@ -8,6 +8,10 @@
 #include <Inventor/actions/SoGetMatrixAction.h>
 #include <Inventor/actions/SoGetPrimitiveCountAction.h>
 #include <Inventor/actions/SoSearchAction.h>
+#include <Inventor/fields/SoSFBool.h>
+#include <Inventor/fields/SoSFNode.h>
+#include <Inventor/lists/SoFieldList.h>
+#include <Inventor/nodekits/SoBaseKit.h>
 #include <Inventor/nodes/SoQuadMesh.h>
 #include <SoTerrain/SoTerrainShape.h>
 
@@ -20,6 +24,10 @@ namespace {
 SoTerrainShape* asTerrain(SoNode* node) {
     if (!node || !node->isOfType(SoTerrainShape::getClassTypeId())) return nullptr;
     return static_cast<SoTerrainShape*>(node);
+}
+
+SoSFBool* flagOf(SoNode* node, const char* name) {
+    return dynamic_cast<SoSFBool*>(node->getField(name));
 }
 
 // Nearest and farthest point of a box along the direction of view.
@@ -111,17 +119,71 @@ FrameFigures Scene::figures() {
     return figures;
 }
 
-bool Scene::isComplete() const {
+std::vector<SoTerrainShape*> Scene::terrainShapes() const {
     SoSearchAction search;
     search.setType(SoTerrainShape::getClassTypeId());
     search.setInterest(SoSearchAction::ALL);
+    const SbBool searchesKits = SoBaseKit::isSearchingChildren();
+    SoBaseKit::setSearchingChildren(TRUE);
     search.apply(root_.get());
+    SoBaseKit::setSearchingChildren(searchesKits);
     const SoPathList& found = search.getPaths();
-    for (int i = 0; i < found.getLength(); ++i) {
-        const SoTerrainShape* shape = asTerrain(static_cast<SoFullPath*>(found[i])->getTail());
-        if (!shape->getStatistics().converged) return false;
+    std::vector<SoTerrainShape*> shapes;
+    for (int i = 0; i < found.getLength(); ++i) shapes.push_back(asTerrain(static_cast<SoFullPath*>(found[i])->getTail()));
+    return shapes;
+}
+
+bool Scene::isComplete() const {
+    const auto shapes = terrainShapes();
+    return std::all_of(shapes.begin(), shapes.end(), [](const SoTerrainShape* shape) { return shape->getStatistics().converged; });
+}
+
+void Scene::waitForTiles(bool on) {
+    for (const auto& node : hurried_) flagOf(node.get(), "background")->setValue(TRUE);
+    hurried_.clear();
+    if (!on) return;
+    for (SoTerrainShape* shape : terrainShapes()) {
+        SoSFBool* background = flagOf(shape, "background");
+        if (!background || !background->getValue()) continue;
+        background->setValue(FALSE);
+        hurried_.emplace_back(shape);
     }
-    return true;
+}
+
+void Scene::restart() {
+    for (SoTerrainShape* shape : terrainShapes()) shape->restart();
+}
+
+void Scene::holdMeshes(bool on) {
+    const auto setQuietly = [](SoSFBool* flag, SbBool value) {
+        const SbBool notified = flag->enableNotify(FALSE);
+        flag->setValue(value);
+        flag->enableNotify(notified);
+    };
+    for (const auto& node : held_) setQuietly(flagOf(node.get(), "freeze"), FALSE);
+    held_.clear();
+    if (!on) return;
+    for (SoTerrainShape* shape : terrainShapes()) {
+        if (shape->freeze.getValue()) continue;
+        setQuietly(&shape->freeze, TRUE);
+        held_.emplace_back(shape);
+    }
+}
+
+std::vector<std::pair<std::string, std::string>> Scene::settings() const {
+    std::vector<std::pair<std::string, std::string>> settings;
+    SoFieldList fields;
+    if (terrain_) terrain_->getFields(fields);
+    for (int i = 0; i < fields.getLength(); ++i) {
+        // What holds data or other nodes is no setting.
+        if (!fields[i]->isOfType(SoSField::getClassTypeId()) || fields[i]->isOfType(SoSFNode::getClassTypeId())) continue;
+        SbName name;
+        SbString value;
+        if (!terrain_->getFieldName(fields[i], name)) continue;
+        fields[i]->get(value);
+        settings.emplace_back(name.getString(), value.getString());
+    }
+    return settings;
 }
 
 terrain::Result<std::unique_ptr<ErrorMeter>> Scene::makeErrorMeter() {

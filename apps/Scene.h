@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <Inventor/SbBox.h>
 #include <Inventor/SoPath.h>
@@ -15,6 +17,7 @@
 #include <Inventor/nodes/SoTexture2.h>
 
 #include "Flight.h"
+#include "MeasureError.h"
 #include "NodePtr.h"
 #include "Options.h"
 #include "Profile.h"
@@ -22,6 +25,7 @@
 #include "base/Result.h"
 
 class SoSearchAction;
+class SoTerrainShape;
 
 namespace app {
 
@@ -75,6 +79,14 @@ public:
     FrameFigures figures();
     /// Whether every terrain node has drawn all that it wants to: false while tiles are still being built.
     bool isComplete() const;
+    /// Whether frames wait until all of their tiles are built. At first they do as the options and the scene file say.
+    void waitForTiles(bool on);
+    /// Lets all terrain nodes begin again: what was drawn before has no influence on the meshes that follow.
+    void restart();
+    /// Keeps all meshes as they are while it is on, without telling anybody: for frames that only refresh the window.
+    void holdMeshes(bool on);
+    /// The fields of the terrain and their values as in a file, but for those that hold nodes or lists.
+    std::vector<std::pair<std::string, std::string>> settings() const;
     /// A meter for the terrain. Error: nothing is known about its full-resolution data.
     terrain::Result<std::unique_ptr<ErrorMeter>> makeErrorMeter();
 
@@ -92,6 +104,7 @@ private:
     std::optional<terrain::Error> addCoinArrays(SoSeparator& group, Feed feed, const std::string& name);
     std::shared_ptr<const terrain::HeightSource> heightSource() const;
     const TerrainGrid* completeGrid();
+    std::vector<SoTerrainShape*> terrainShapes() const;
 
     NodePtr<SoSeparator> root_;
     SoCamera* camera_ = nullptr;
@@ -108,6 +121,8 @@ private:
     std::optional<TerrainGrid> grid_;
     bool ownClipping_ = false;
     std::optional<std::uint64_t> countedTriangles_;
+    std::vector<NodePtr<SoNode>> hurried_;  ///< whose `background` is off because frames are to wait
+    std::vector<NodePtr<SoNode>> held_;     ///< whose `freeze` is on because meshes are held
 };
 
 }  // namespace app

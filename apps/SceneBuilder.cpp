@@ -20,6 +20,15 @@ namespace app {
 using terrain::Error;
 using terrain::Result;
 
+namespace {
+
+// Pictures and measured errors are those of complete frames, however long tiles take.
+bool waitsForTiles(const Options& options) {
+    return !options.output.empty() || options.measureError;
+}
+
+}  // namespace
+
 /// Builds one scene; each step returns what went wrong, if anything did.
 class SceneBuilder {
 public:
@@ -32,7 +41,6 @@ public:
 private:
     void addRoot();
     void addCamera();
-    void waitForTiles();
     NodePtr<SoPath> find(SoType type) const;
     void chooseTerrain();
     std::optional<Error> checkHeightMaps() const;
@@ -64,20 +72,6 @@ void SceneBuilder::addCamera() {
     scene_.setPose(scene_.home_);
 }
 
-// Pictures and measured errors are those of complete frames, however long tiles take.
-void SceneBuilder::waitForTiles() {
-    if (options_.output.empty() && !options_.measureError) return;
-    SoSearchAction search;
-    search.setType(SoTerrainShape::getClassTypeId());
-    search.setInterest(SoSearchAction::ALL);
-    search.apply(scene_.root_.get());
-    const SoPathList& found = search.getPaths();
-    for (int i = 0; i < found.getLength(); ++i) {
-        SoNode* node = static_cast<SoFullPath*>(found[i])->getTail();
-        if (auto* background = dynamic_cast<SoSFBool*>(node->getField("background"))) background->setValue(FALSE);
-    }
-}
-
 std::optional<Error> SceneBuilder::fromHeightMap() {
     terrain::HeightFileOptions how;
     how.channel = options_.channel.value_or(how.channel);
@@ -99,7 +93,7 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     const Algorithm& algorithm = options_.algorithm ? *options_.algorithm : *findAlgorithm("roam");
     if (auto problem = scene_.putTerrain(algorithm, options_)) return problem;
     scene_.setFields(options_, true);
-    waitForTiles();
+    scene_.waitForTiles(waitsForTiles(options_));
     return std::nullopt;
 }
 
@@ -191,7 +185,7 @@ std::optional<Error> SceneBuilder::fromFile() {
     }
     chooseTerrain();
     scene_.setFields(options_, true);
-    waitForTiles();
+    scene_.waitForTiles(waitsForTiles(options_));
     SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
     bounds.apply(scene_.root_.get());
     scene_.box_ = bounds.getBoundingBox();

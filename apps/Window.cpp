@@ -62,7 +62,7 @@ std::optional<Error> runWindow(const Options& options, Scene& scene, double star
     SoQt::mainLoop();
     const FlyArea& area = window.area();
     if (area.problem()) return area.problem();
-    return log.value().finish(options, scene, area.renderer());
+    return log.value().finish(options, scene, area.renderer(), area.sizePixels());
 }
 
 }  // namespace app

@@ -106,6 +106,11 @@ SoChunkedLoDTerrain::SoChunkedLoDTerrain()
 
 SoChunkedLoDTerrain::~SoChunkedLoDTerrain() {}
 
+void SoChunkedLoDTerrain::restart()
+{
+    this->touch();
+}
+
 void SoChunkedLoDTerrain::notify(SoNotList * list)
 {
     if (list->getLastField() == &this->tileSize) discardMeshes();

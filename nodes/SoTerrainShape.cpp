@@ -227,6 +227,12 @@ void SoTerrainShape::discardMeshes()
     ++pimpl->meshVersion;
 }
 
+void SoTerrainShape::restart()
+{
+    ++pimpl->start;
+    this->touch();
+}
+
 bool SoTerrainShape::needsErrors() const
 {
     return true;
@@ -366,7 +372,8 @@ void SoTerrainShape::Private::bringUpToDate(TerrainView & view, const TerrainGri
     const std::uint64_t version = data.model.edits ? data.model.edits->version() : 0;
     const bool sameGrid = view.boxes == data.model.boxes && view.localFromFrame == data.grid.localFromFrame();
     const auto edits = sameGrid && data.model.edits ? data.model.edits->since(view.edits) : std::optional<terrain::GridEdits>(terrain::GridEdits{});
-    if (!sameGrid || !edits) TerrainViews::discardDrawing(view);
+    if (!sameGrid || !edits || view.start != start) TerrainViews::discardDrawing(view);
+    if (view.start != start) view.algorithm.reset();
     if (!sameGrid || !edits || view.meshVersion != meshVersion) {
         // What it shares with others of its kind, and does not depend on places, is found again while it is there.
         const std::unique_ptr<terrain::LodAlgorithm> before = std::move(view.algorithm);
@@ -381,6 +388,7 @@ void SoTerrainShape::Private::bringUpToDate(TerrainView & view, const TerrainGri
     view.edits = version;
     view.localFromFrame = data.grid.localFromFrame();
     view.meshVersion = meshVersion;
+    view.start = start;
 }
 
 void SoTerrainShape::Private::render(SoGLRenderAction * action)

@@ -41,6 +41,7 @@ public:
     GridCache grids;
     TerrainViews views;
     std::uint64_t meshVersion = 0;  ///< meshes of an earlier one are replaced
+    std::uint64_t start = 0;        ///< views of an earlier one begin again
     SoTerrainStatistics statistics;
     TerrainCounters counters;
     std::set<std::string> warned;

@@ -54,6 +54,7 @@ struct TerrainView {
     std::uint64_t edits = 0;                           ///< version of that data
     glm::dmat4 localFromFrame{1.0};                    ///< where it stood
     std::uint64_t meshVersion = 0;                     ///< SoTerrainShape::Private::meshVersion when it was made
+    std::uint64_t start = 0;                           ///< SoTerrainShape::Private::start when it was made
     std::unique_ptr<terrain::LodAlgorithm> algorithm;
     terrain::TerrainRenderer renderer;
     std::unique_ptr<ViewDrawing> drawing;  ///< of a node that draws itself

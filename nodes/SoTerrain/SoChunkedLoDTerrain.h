@@ -18,6 +18,9 @@ public:
     SoSFInt32 uploadBudget;  ///< kilobytes a frame of tiles that are new on screen; 0: no limit
     SoSFBool background;     ///< build tiles in other threads while coarser ones stand in
 
+    /// Tiles are the same whatever was drawn before, and stay.
+    virtual void restart();
+
     virtual void notify(SoNotList * list);
 
 protected:

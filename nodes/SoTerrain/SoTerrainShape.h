@@ -56,6 +56,11 @@ public:
     /// is written.
     SbBool heightAt(float x, float y, float & height, SbVec3f * normal = NULL, SoPath * path = NULL);
 
+    /// Lets every view begin again with its next frame, as if it had not been drawn before: meshes that are refined from frame to frame
+    /// depend on the frames before. After it the same cameras in the same order are drawn with the same triangles, where no tiles are
+    /// awaited (SoChunkedLoDTerrain::background FALSE). What takes long to make and is always the same stays: errors, tiles.
+    virtual void restart();
+
     virtual void GLRender(SoGLRenderAction * action);
     virtual void rayPick(SoRayPickAction * action);
     virtual void getPrimitiveCount(SoGetPrimitiveCountAction * action);

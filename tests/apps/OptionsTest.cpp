@@ -43,6 +43,21 @@ TEST(Options, EveryShortFlagHasItsMeaning)
     EXPECT_TRUE(o.fullScreen && o.frustumCulling && o.animate && o.synchronize);
 }
 
+TEST(Options, RepetitionsNeedAFlightWithAllOfItsFrames)
+{
+    const auto result = parse({"-h", "m.png", "--flight", "f.csv", "--repeat", "5", "--summary", "s.json"});
+    ASSERT_TRUE(result) << result.error().message();
+    EXPECT_EQ(result.value().repeat, 5);
+    EXPECT_EQ(result.value().summary, "s.json");
+    EXPECT_TRUE(result.value().replays());
+    EXPECT_NE(refusal({"-h", "m.png", "--repeat", "5"}), "");
+    EXPECT_NE(refusal({"-h", "m.png", "-v", "-s", "--repeat", "5"}), "");
+    EXPECT_NE(refusal({"-h", "m.png", "-v", "--repeat", "0"}), "");
+    EXPECT_NE(refusal({"-h", "m.png", "-v", "--repeat", "2", "--record", "r.csv"}), "");
+    EXPECT_NE(refusal({"-h", "m.png", "--flight", "f.csv", "--record", "f.csv"}), "") << "the flight would be lost";
+    EXPECT_FALSE(parse({"-h", "m.png", "--flight", "f.csv", "-s"}).value().replays()) << "frames that are left out depend on time";
+}
+
 TEST(Options, SwitchesAreOffUnlessGiven)
 {
     const auto result = parse({"-h", "m.png"});
