@@ -78,11 +78,12 @@ int channelCount(const std::string& path) {
     return input ? input->spec().nchannels : 0;
 }
 
-std::optional<Error> writeImage(const std::string& path, const Image& image) {
+std::optional<Error> writeImage(const std::string& path, const Image& image, int quality) {
     if (path.ends_with(".ppm")) return writePpm(path, image);
     const auto output = OIIO::ImageOutput::create(path);
     if (!output) return Error{path, "the name of a picture, such as .png, .jpg or .ppm", OIIO::geterror()};
-    const OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT8);
+    OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT8);
+    if (quality > 0) spec.attribute("CompressionQuality", quality);
     const bool written = output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT8, image.pixels.data());
     if (written && output->close()) return std::nullopt;
     return Error{path, "a file that can be written", output->geterror()};
@@ -99,7 +100,7 @@ int channelCount(const std::string& path) {
     return read ? read.value().channels : 0;
 }
 
-std::optional<Error> writeImage(const std::string& path, const Image& image) {
+std::optional<Error> writeImage(const std::string& path, const Image& image, int) {
     if (path.ends_with(".ppm")) return writePpm(path, image);
     return Error{path, "a name that ends in .ppm (this build has no OpenImageIO)", "another one"};
 }

@@ -1,23 +1,17 @@
 // Compares node classes on the standard flight over one map: a table, and the same in JSON.
 #include <getopt.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "BenchRun.h"
-#include "CoinStart.h"
+#include "BenchProcess.h"
+#include "Numbers.h"
 #include "ShippedData.h"
 
 namespace {
@@ -25,14 +19,18 @@ namespace {
 using nlohmann::ordered_json;
 
 const char* const usageText =
-    "Usage: soterrain-bench --map FILE [--texture FILE] [--frames N] [--nodes CLASS,CLASS,...] [--pixel-error PX] [--json FILE]\n"
-    "Flies the standard flight (1024x768) over the map with each node class, each in a process of its own, and prints a table.\n"
+    "Usage: soterrain-bench --map FILE [option]...\n"
+    "Flies one flight (1024x768) over the map with each node class, each in a process of its own, and prints a table.\n"
     "  --map FILE          height map\n"
     "  --texture FILE      texture\n"
+    "  --flight FILE       a flight that SoTerrainTest recorded over this map, instead of the standard one\n"
+    "  --spacing X[,Y]     distance of samples, as SoTerrainTest has it\n"
+    "  --height-scale S    factor on heights\n"
     "  --frames N          frames of the flight (60)\n"
     "  --nodes LIST        node classes, by default Coin's SoIndexedFaceSet and SoQuadMesh and all of SoTerrain\n"
     "  --pixel-error PX    field pixelError of the nodes that have it (2)\n"
-    "  --error-every K     measure the screen error every K frames (20)\n"
+    "  --fields TEXT       further fields of the nodes, as an .iv file has them, such as \"clipmapSize 127\"\n"
+    "  --error-every K     measure the screen error every K frames (5)\n"
     "  --json FILE         write everything that was measured here too\n"
     "  --help              print this\n"
     "Exit status: 0, 1 when a node could not be measured, 2 for a wrong command line.\n";
@@ -44,42 +42,28 @@ struct Arguments {
                                    "SoGeometryClipmapTerrain"};
     std::string json;
     bool help = false;
-    bool child = false;  ///< measure one class and print JSON
 };
 
-enum Code { Map = 1, Texture, Frames, Nodes, PixelError, ErrorEvery, Json, Child, Help };
+enum Code { Map = 1, Texture, Flight, Spacing, HeightScale, Frames, Nodes, PixelError, ErrorEvery, Json, Fields, Help };
 
 const option longOptions[] = {
     {"map", required_argument, nullptr, Map},
     {"texture", required_argument, nullptr, Texture},
+    {"flight", required_argument, nullptr, Flight},
+    {"spacing", required_argument, nullptr, Spacing},
+    {"height-scale", required_argument, nullptr, HeightScale},
     {"frames", required_argument, nullptr, Frames},
     {"nodes", required_argument, nullptr, Nodes},
     {"pixel-error", required_argument, nullptr, PixelError},
     {"error-every", required_argument, nullptr, ErrorEvery},
     {"json", required_argument, nullptr, Json},
-    {"child", required_argument, nullptr, Child},
+    {"fields", required_argument, nullptr, Fields},
     {"help", no_argument, nullptr, Help},
     {nullptr, 0, nullptr, 0},
 };
 
-template <class Number>
-bool readNumber(const char* text, Number lowest, Number& number) {
-    const char* end = text + std::strlen(text);
-    const auto [stop, problem] = std::from_chars(text, end, number);
-    return problem == std::errc() && stop == end && number >= lowest && number <= Number(1e6);
-}
-
-std::vector<std::string> split(std::string_view list) {
-    std::vector<std::string> words;
-    while (!list.empty()) {
-        const std::size_t comma = std::min(list.find(','), list.size());
-        if (comma > 0) words.emplace_back(list.substr(0, comma));
-        list.remove_prefix(std::min(comma + 1, list.size()));
-    }
-    return words;
-}
-
 bool take(int code, Arguments& arguments) {
+    constexpr int most = 1000000;
     app::BenchRequest& request = arguments.request;
     switch (code) {
     case Map:
@@ -88,21 +72,27 @@ bool take(int code, Arguments& arguments) {
     case Texture:
         request.texture = app::findShipped(optarg);
         return true;
+    case Flight:
+        request.flight = optarg;
+        return true;
+    case Spacing:
+        return app::readSpacing(optarg, request.spacing);
+    case HeightScale:
+        return app::readFactor(optarg, request.heightScale);
     case Frames:
-        return readNumber(optarg, 1, request.frames);
+        return app::readNumber(optarg, 1, most, request.frames);
     case Nodes:
-        arguments.nodes = split(optarg);
+        arguments.nodes = app::splitList(optarg);
         return !arguments.nodes.empty();
     case PixelError:
-        return readNumber(optarg, 0.0, request.pixelError);
+        return app::readNumber(optarg, 0.0, double(most), request.pixelError);
     case ErrorEvery:
-        return readNumber(optarg, 1, request.errorEvery);
+        return app::readNumber(optarg, 1, most, request.errorEvery);
     case Json:
         arguments.json = optarg;
         return true;
-    case Child:
-        arguments.child = true;
-        request.className = optarg;
+    case Fields:
+        request.fields = optarg;
         return true;
     case Help:
         return arguments.help = true;
@@ -125,46 +115,6 @@ std::optional<Arguments> parse(int argc, char** argv) {
     return std::nullopt;
 }
 
-// Runs this program again for one class and returns what it prints, or nothing when it fails.
-std::optional<ordered_json> measureInChild(const std::string& node, char** argv) {
-    int ends[2];
-    if (pipe(ends) != 0) return std::nullopt;
-    const pid_t child = fork();
-    if (child == 0) {
-        dup2(ends[1], STDOUT_FILENO);
-        close(ends[0]);
-        close(ends[1]);
-        std::vector<char*> arguments;
-        for (char** argument = argv; *argument; ++argument) arguments.push_back(*argument);
-        std::string name = "--child=" + node;
-        arguments.push_back(name.data());
-        arguments.push_back(nullptr);
-        execv("/proc/self/exe", arguments.data());
-        _exit(127);
-    }
-    close(ends[1]);
-    std::string text;
-    char buffer[4096];
-    for (ssize_t count = 0; child > 0 && (count = read(ends[0], buffer, sizeof buffer)) > 0;)
-        text.append(buffer, std::size_t(count));
-    close(ends[0]);
-    int status = -1;
-    if (child < 0 || waitpid(child, &status, 0) != child || status != 0) return std::nullopt;
-    ordered_json out = ordered_json::parse(text, nullptr, false);
-    return out.is_discarded() ? std::nullopt : std::optional(out);
-}
-
-int runChild(const app::BenchRequest& request) {
-    app::startCoin();
-    const auto result = app::runBench(request);
-    if (!result) {
-        std::fprintf(stderr, "soterrain-bench: %s\n", result.error().message().c_str());
-        return EXIT_FAILURE;
-    }
-    std::printf("%s\n", result.value().dump().c_str());
-    return EXIT_SUCCESS;
-}
-
 void printRow(const ordered_json& r) {
     const auto perSample = [&r](const char* key) {
         char text[16] = "-";
@@ -185,8 +135,8 @@ void printRow(const ordered_json& r) {
 }
 
 void printHead(const app::BenchRequest& request) {
-    std::printf("standard flight, %d frames, 1024x768, pixelError %g, %s\n", request.frames, request.pixelError,
-                request.map.c_str());
+    std::printf("%s, %d frames, 1024x768, pixelError %g, %s\n", request.flight.empty() ? "standard flight" : request.flight.c_str(),
+                request.frames, request.pixelError, request.map.c_str());
     std::printf("%-22s %26s %8s %10s %23s %26s %9s\n", "", "frame ms", "CPU ms", "triangles", "screen error px", "bytes a sample",
                 "start ms");
     std::printf("%-22s %8s %8s %8s %8s %10s %7s %7s %7s %8s %8s %8s\n", "node", "median", "p95", "worst", "median", "mean", "rms",
@@ -197,19 +147,21 @@ void printHead(const app::BenchRequest& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (const auto status = app::runBenchProcess(argc, argv, "soterrain-bench")) return *status;
     const std::optional<Arguments> arguments = parse(argc, argv);
     if (!arguments || arguments->help) {
         std::fputs(usageText, arguments ? stdout : stderr);
         return arguments ? EXIT_SUCCESS : 2;
     }
-    if (arguments->child) return runChild(arguments->request);
     printHead(arguments->request);
     ordered_json all = ordered_json::array();
     bool complete = true;
+    app::BenchRequest request = arguments->request;
     for (const std::string& node : arguments->nodes) {
-        if (const auto result = measureInChild(node, argv)) {
-            printRow(*result);
-            all.push_back(*result);
+        request.className = node;
+        if (const app::BenchOutcome outcome = app::benchInProcess(request); !outcome.result.is_null()) {
+            printRow(outcome.result);
+            all.push_back(outcome.result);
         } else {
             std::printf("%-22s not measured\n", node.c_str());
             complete = false;
