@@ -12,6 +12,7 @@
 #include <Inventor/Qt/SoQt.h>
 #include <Inventor/fields/SoSFFloat.h>
 #include <Inventor/nodes/SoSeparator.h>
+#include <QWidget>
 
 #include "Clock.h"
 #include "FlyArea.h"
@@ -212,6 +213,10 @@ void FlyArea::noteScene() {
 
 void FlyArea::sizeChanged(const SbVec2s& size) {
     SoQtRenderArea::sizeChanged(size);
+    // SoQt 1.6.0 gives its widget as many points as the picture has pixels, which are more on a display of high density.
+    QWidget* widget = getGLWidget();
+    statusLine_.setScale(float(widget->devicePixelRatioF()));
+    if (widget->parentWidget() && widget->devicePixelRatioF() != 1.0) widget->setGeometry(widget->parentWidget()->rect());
     drawnScene_ = 0;
     resized_ = true;
     // Frames of another size have other meshes.

@@ -66,7 +66,7 @@ Keys (the window's menus offer the same, and more)
   ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
   Left Alt+Enter, F11  full screen                        Esc  quit             F1  all keys
   1 to 7  another algorithm, in the order of -a's list
-  Ctrl+O  open a terrain          Ctrl+T  open a texture
+  Ctrl+O  open a terrain          Ctrl+T  open a texture                     Ctrl+,  settings
 
 Without -h and --scene the window shows the installed terrain, or waits for a file: File > Open, or one that is dropped on it.
 

@@ -18,6 +18,7 @@
 #include <QStatusBar>
 
 #include "HelpDialogs.h"
+#include "SettingsDialog.h"
 
 namespace app {
 
@@ -116,6 +117,7 @@ void MainWindow::refresh() {
         if (entry.command->isPossible) entry.action->setEnabled(entry.command->isPossible(*this));
         if (entry.command->isOn) entry.action->setChecked(entry.command->isOn(*this));
     }
+    if (settingsDialog_ && settingsDialog_->isVisible()) settingsDialog_->follow();
 }
 
 void MainWindow::setStatus(const std::string& text) {
@@ -152,6 +154,14 @@ void MainWindow::setAlgorithm(const Algorithm& algorithm) {
 
 bool MainWindow::canSwitchTo(const Algorithm& algorithm) const {
     return canOpen() && scene_.offers(algorithm);
+}
+
+void MainWindow::showSettings() {
+    if (!settingsDialog_) settingsDialog_ = new SettingsDialog(*this);
+    settingsDialog_->follow();
+    settingsDialog_->show();
+    settingsDialog_->raise();
+    settingsDialog_->activateWindow();
 }
 
 void MainWindow::showKeys() {

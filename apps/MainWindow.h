@@ -21,6 +21,8 @@ class QMenu;
 
 namespace app {
 
+class SettingsDialog;
+
 class MainWindow : public QMainWindow {
 public:
     /// The scene and the log outlive the window.
@@ -44,6 +46,9 @@ public:
     bool canTexture() const;
     /// Draws the terrain with another algorithm; camera, texture and settings stay.
     void setAlgorithm(const Algorithm& algorithm);
+    /// Shows the present terrain by other options.
+    void showAgain(const Options& next);
+    void showSettings();
     bool canSwitchTo(const Algorithm& algorithm) const;
     /// A message in the status bar, for some seconds.
     void say(const std::string& message);
@@ -84,6 +89,7 @@ private:
     QLabel* status_;
     QMenu* recent_;
     QDialog* keys_ = nullptr;
+    SettingsDialog* settingsDialog_ = nullptr;
     std::string fileName_;
     QRect windowed_;  ///< geometry outside full screen
 };

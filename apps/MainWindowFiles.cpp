@@ -5,6 +5,8 @@
 
 #ifdef HAVE_SOQT
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -18,6 +20,7 @@
 
 #include "MainWindow.h"
 #include "OpenFiles.h"
+#include "RawDialog.h"
 
 namespace app {
 
@@ -100,7 +103,7 @@ void MainWindow::fail(const Error& problem) {
 }
 
 bool MainWindow::showScene(const Options& next, bool keepCamera) {
-    auto built = Scene::build(next.scene.empty() ? next : forScene(next));
+    auto built = Scene::build(next.scene.empty() ? next : forScene(next), false);
     if (!built) {
         fail(built.error());
         return false;
@@ -145,7 +148,19 @@ void MainWindow::openFile(const RecentFile& file) {
     next.texture = file.texture;
     next.rawSize = file.rawSize;
     next.rawType = file.rawType;
+    if (needsRawSize(next) && !askRawSize(this, next)) return;
     showScene(next, false);
+}
+
+// The camera stays where the ground does.
+void MainWindow::showAgain(const Options& next) {
+    Options now = next;
+    scene_.readFields(now);
+    const SbBox3f former = scene_.box();
+    if (!showScene(now, true)) return;
+    const SbVec3f low = former.getMin() - scene_.box().getMin(), high = former.getMax() - scene_.box().getMax();
+    if (std::max({std::abs(low[0]), std::abs(low[1]), std::abs(high[0]), std::abs(high[1])}) > 1e-3f * scene_.size())
+        area_->goHome();
 }
 
 void MainWindow::setTexture(const std::string& path) {

@@ -21,8 +21,12 @@ std::string extensionOf(const std::string& path) {
 FileKind fileKind(const std::string& path) {
     const std::string extension = extensionOf(path);
     if (extension == ".iv" || extension == ".wrl") return FileKind::Scene;
-    if (extension == ".raw") return FileKind::Heights;
+    if (isHeaderless(path)) return FileKind::Heights;
     return channelCount(path) >= 3 ? FileKind::Picture : FileKind::Heights;
+}
+
+bool isHeaderless(const std::string& path) {
+    return extensionOf(path) == ".raw";
 }
 
 FilePatterns picturePatterns() {

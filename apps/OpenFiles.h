@@ -16,6 +16,9 @@ enum class FileKind {
 /// says what is wrong.
 FileKind fileKind(const std::string& path);
 
+/// Whether a file holds nothing but samples, by its name.
+bool isHeaderless(const std::string& path);
+
 /// Names of files, for a dialog.
 struct FilePatterns {
     const char* title;

@@ -39,7 +39,8 @@ constexpr float skyColor[3] = {0.45f, 0.6f, 0.85f};
 class Scene {
 public:
     /// Error: a file that can't be read, an algorithm that this build lacks, a map too large for Coin's own shapes.
-    static terrain::Result<Scene> build(const Options& options);
+    /// `tells`: options without effect are told on standard error.
+    static terrain::Result<Scene> build(const Options& options, bool tells = true);
     /// Nothing but an invitation to open a file.
     static Scene empty();
 
@@ -68,6 +69,9 @@ public:
     void setFields(const Options& options, bool tells);
     /// The other way round, for the fields that the terrain has.
     void readFields(Options& options) const;
+
+    /// Of a height map: factor from samples to heights.
+    double heightScale() const;
 
     /// Moves the camera, and its clipping planes when they are ours to choose.
     void setPose(const Pose& pose);

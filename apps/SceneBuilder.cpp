@@ -32,7 +32,7 @@ bool waitsForTiles(const Options& options) {
 /// Builds one scene; each step returns what went wrong, if anything did.
 class SceneBuilder {
 public:
-    explicit SceneBuilder(const Options& options) : options_(options) {}
+    SceneBuilder(const Options& options, bool tells) : options_(options), tells_(tells) {}
 
     std::optional<Error> fromHeightMap();
     std::optional<Error> fromFile();
@@ -48,6 +48,7 @@ private:
     void placeSceneCamera();
 
     const Options& options_;
+    bool tells_;
     Scene scene_;
 };
 
@@ -92,7 +93,7 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     if (auto problem = scene_.setTexture(options_.texture)) return problem;
     const Algorithm& algorithm = options_.algorithm ? *options_.algorithm : *findAlgorithm("roam");
     if (auto problem = scene_.putTerrain(algorithm, options_)) return problem;
-    scene_.setFields(options_, true);
+    scene_.setFields(options_, tells_);
     scene_.waitForTiles(waitsForTiles(options_));
     return std::nullopt;
 }
@@ -184,7 +185,7 @@ std::optional<Error> SceneBuilder::fromFile() {
         scene_.root_->insertChild(sun, 0);
     }
     chooseTerrain();
-    scene_.setFields(options_, true);
+    scene_.setFields(options_, tells_);
     scene_.waitForTiles(waitsForTiles(options_));
     SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
     bounds.apply(scene_.root_.get());
@@ -195,8 +196,8 @@ std::optional<Error> SceneBuilder::fromFile() {
     return std::nullopt;
 }
 
-Result<Scene> Scene::build(const Options& options) {
-    SceneBuilder builder(options);
+Result<Scene> Scene::build(const Options& options, bool tells) {
+    SceneBuilder builder(options, tells);
     if (auto problem = options.scene.empty() ? builder.fromHeightMap() : builder.fromFile()) return *problem;
     return builder.take();
 }

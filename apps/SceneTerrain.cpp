@@ -141,6 +141,10 @@ const TerrainGrid* Scene::completeGrid() {
     return grid_->source ? &*grid_ : nullptr;
 }
 
+double Scene::heightScale() const {
+    return heightMap_ ? double(static_cast<SoHeightMap*>(heightMap_.get())->heightScale.getValue()) : grid_->heightScale;
+}
+
 bool Scene::offers(const Algorithm& algorithm) const {
     if (!terrain_) return false;
     if (isHeightMap())

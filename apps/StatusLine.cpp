@@ -2,6 +2,7 @@
 
 #include <Inventor/nodes/SoBaseColor.h>
 #include <Inventor/nodes/SoDepthBuffer.h>
+#include <Inventor/nodes/SoFont.h>
 #include <Inventor/nodes/SoLightModel.h>
 #include <Inventor/nodes/SoOrthographicCamera.h>
 #include <Inventor/nodes/SoSeparator.h>
@@ -10,7 +11,7 @@
 
 namespace app {
 
-StatusLine::StatusLine() : root_(new SoSeparator) {
+StatusLine::StatusLine() : root_(new SoSeparator), font_(new SoFont) {
     // A unit square over the whole picture, whatever its shape.
     auto* camera = new SoOrthographicCamera;
     camera->viewportMapping = SoCamera::LEAVE_ALONE;
@@ -43,6 +44,13 @@ void StatusLine::addText(float shift, float gray) {
     group->addChild(text_[count_]);
     root_->addChild(group);
     ++count_;
+}
+
+void StatusLine::setScale(float scale) {
+    font_->size = 10.0f * scale;
+    const int there = root_->findChild(font_.get());
+    if (scale != 1.0f && there < 0) root_->insertChild(font_.get(), 0);
+    if (scale == 1.0f && there >= 0) root_->removeChild(there);
 }
 
 void StatusLine::setText(const std::string& text) {

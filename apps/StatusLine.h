@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <Inventor/nodes/SoFont.h>
+
 #include "NodePtr.h"
 
 class SoSeparator;
@@ -17,11 +19,14 @@ public:
     /// To be drawn after the scene.
     SoSeparator* root() const { return root_.get(); }
     void setText(const std::string& text);
+    /// Makes the text this much larger than Coin's own.
+    void setScale(float scale);
 
 private:
     void addText(float shift, float gray);
 
     NodePtr<SoSeparator> root_;
+    NodePtr<SoFont> font_;  ///< takes part while the text is scaled
     SoText2* text_[2] = {nullptr, nullptr};
     int count_ = 0;
 };

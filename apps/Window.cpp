@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include <Inventor/Qt/SoQt.h>
+#include <QCoreApplication>
 #include <QSurfaceFormat>
 
 #include "Clock.h"
@@ -48,6 +49,9 @@ std::optional<Error> openDisplay(const char* program) {
     format.setProfile(QSurfaceFormat::CompatibilityProfile);
     format.setDepthBufferSize(24);
     QSurfaceFormat::setDefaultFormat(format);
+    // Sizes of windows are in points, that of the picture in pixels of the device: pixel errors are too.
+    QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
+    QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
     return SoQt::init(program) ? std::nullopt : std::optional(Error{noDisplay, "", ""});
 }
 

@@ -5,7 +5,8 @@
 make_raw "$SCRATCH/map.raw"
 cp "$SCRATCH/map.raw" "$SCRATCH/other map.raw"
 { printf 'P6\n2 2\n255\n'; printf '\377\0\0\0\377\0\0\0\377\377\377\0'; } >"$SCRATCH/colours.ppm"
-printf 'no heights\n' >"$SCRATCH/bad.raw"
+printf 'no heights\n' >"$SCRATCH/bad.png"
+head -c 12 /dev/zero >"$SCRATCH/oblong.raw"
 cat >"$SCRATCH/scene.iv" <<'SCENE'
 #Inventor V2.1 ascii
 Separator {
@@ -41,12 +42,12 @@ moved map textured || fail "the texture is not seen"
 
 # A bad file is told in one message, and the scene stays.
 xdotool key ctrl+o
-choose '^Open a terrain$' "$SCRATCH/bad.raw"
+choose '^Open a terrain$' "$SCRATCH/bad.png"
 find_dialog '^SoTerrainTest$'
 xdotool key Return
 sleep 0.5
 xdotool windowfocus "$window"
-[ "$(grep -c 'bad.raw' "$SCRATCH/err")" = 1 ] || { fail "not one message about a bad file"; cat "$SCRATCH/err"; }
+[ "$(grep -c 'bad.png' "$SCRATCH/err")" = 1 ] || { fail "not one message about a bad file"; cat "$SCRATCH/err"; }
 says 'roam .*map.raw$' || fail "a bad file takes the scene: $(title)"
 
 xdotool key ctrl+o
@@ -102,6 +103,51 @@ says 'SoROAMTerrain .*of 3.00 px' || fail "the node of a scene is not exchanged:
 xdotool key 7
 sleep 0.5
 title | grep -q SoROAMTerrain || fail "a scene without coordinates gets Coin's shape: $(title)"
+close_window
+
+# The settings act at once, and follow what keys change.
+open_window -h "$SCRATCH/map.raw" -a clipmap --no-settings
+xdotool key ctrl+comma
+find_dialog '^Settings of SoTerrainTest$'
+xdotool key alt+p ctrl+a type 7.5
+xdotool key Return
+says 'of 7.50 px' || fail "the dialog sets no pixel error: $(title)"
+before=$(title)
+xdotool key alt+m Home Down key Tab
+for _ in $(seq 30); do [ "$(title)" != "$before" ] && break; sleep 0.1; done
+[ "$(title)" != "$before" ] || fail "the dialog sets no clipmap size: $(title)"
+xdotool key alt+a key End
+says '^SoTerrainTest: quadmesh' || fail "the dialog does not exchange the algorithm: $(title)"
+xdotool key alt+a key Home
+says '^SoTerrainTest: bruteforce .*of 7.50 px' || fail "the dialog does not exchange the algorithm back: $(title)"
+xdotool key alt+r 2>/dev/null
+xdotool key Escape
+sleep 0.3
+xdotool windowfocus "$window"
+
+# A headerless file that is no square is asked about.
+xdotool key ctrl+o
+choose '^Open a terrain$' "$SCRATCH/oblong.raw"
+find_dialog '^Size of a headerless file$'
+xdotool key Return
+sleep 0.3
+xdotool windowfocus "$window"
+says 'bruteforce .* 12 triangles .*oblong.raw' || fail "a file of 4 x 3 samples gives $(title)"
+close_window
+
+# On a display of high density the picture has as many pixels as its screen, and errors are measured in those.
+triangles() { title | sed 's/.*fps *\([0-9]*\) triangles.*/\1/'; }
+open_window -h "$SCRATCH/map.raw" -e 0.5 -f --no-settings
+says 'of 0.50 px'
+shot plain
+plain=$(triangles)
+close_window
+QT_SCALE_FACTOR=2 open_window -h "$SCRATCH/map.raw" -e 0.5 -f --no-settings
+says 'of 0.50 px'
+shot dense
+[ "$(triangles)" = "$plain" ] || fail "a dense display has $(triangles) triangles instead of $plain"
+truncate -s 2300000 "$SCRATCH/plain.ppm" "$SCRATCH/dense.ppm"  # without the text at the bottom
+same plain dense || fail "a dense display shows another picture"
 close_window
 
 # A run that is measured remembers nothing, nor does one without settings.
