@@ -6,6 +6,7 @@
 
 #include "Commands.h"
 
+#include "DebugCommands.h"
 #include "FlyArea.h"
 #include "MainWindow.h"
 
@@ -106,6 +107,8 @@ const std::vector<Command>& commands() {
         std::vector<Command> rows = algorithmCommands();
         const std::vector<Command> others = makeCommands();
         rows.insert(rows.end(), others.begin(), others.end());
+        const std::vector<Command> debugs = debugCommands();
+        rows.insert(rows.end(), debugs.begin(), debugs.end());
         return rows;
     }();
     return table;

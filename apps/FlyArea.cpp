@@ -41,6 +41,7 @@ FlyArea::FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& 
     auto* all = new SoSeparator;
     all->renderCaching = SoSeparator::OFF;
     all->addChild(scene.root());
+    all->addChild(legend_.root());
     all->addChild(statusLine_.root());
     setBackgroundColor(SbColor(skyColor));
     setSceneGraph(all);
@@ -88,6 +89,7 @@ void FlyArea::play(Animation animation) {
 }
 
 void FlyArea::wake() {
+    legend_.update(scene_, getViewportRegion().getViewportSizePixels());
     activeUntilMs_ = nowMs() + restMs;
     runTimer();
 }
@@ -144,6 +146,7 @@ void FlyArea::advance(double now) {
     if (!next) return endOfAnimation();
     play_->last = next->frame;
     scene_.setPose(play_->animation.pose(next->frame));
+    freezeInTime(scene_, options_, play_->animation.schedule.time(next->frame));
     due_ = true;
     lastDueMs_ = now;
     scheduleRedraw();
@@ -272,6 +275,7 @@ std::string FlyArea::status() const {
     }
     if (hasField("frustumCulling") && !culling()) line += "   no culling";
     if (formerError_) line += "   full detail";
+    if (isFrozen(scene_)) line += "   frozen";
     if (camera_.constantHeight()) line += "   constant height";
     if (recording_) line += "   recording";
     return message_.empty() ? line : line + "   " + message_;

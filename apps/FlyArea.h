@@ -10,6 +10,7 @@
 #include <Inventor/Qt/SoQtRenderArea.h>
 #include <QTimer>
 
+#include "DebugViews.h"
 #include "FlyCamera.h"
 #include "Options.h"
 #include "FrameStatistics.h"
@@ -110,6 +111,7 @@ private:
     double loadMs_;
     FlyCamera camera_;
     StatusLine statusLine_;
+    DebugLegend legend_;
     QTimer timer_;
     std::optional<Play> play_;
     bool ends_;             ///< the program ends with the animation

@@ -31,6 +31,12 @@ Level of detail
   -c, --culling             switch frustum culling on. Without it a height map is drawn without culling; a scene file
                             keeps what it says
 
+Pictures of the mesh
+      --debug-view NAME     none, tiles (a colour of each), levels (yellow: full detail, ... violet: coarse), errors (blue: none,
+                            ... red: the pixel error, magenta: more) or loading (orange: finer tiles are on their way)
+      --overlay             the edges of the triangles over the terrain, or over one of these
+      --freeze-at MS        keep the mesh from this time of the animation on, and draw the view that it was chosen for
+
 Animation
   -v, --animate             play the animation: a circle over the terrain, or --flight. In a window it starts again at its
                             end, unless --frames, -p, --stats, --record or --measure-error wants an end: then the program ends too
@@ -64,6 +70,7 @@ Keys (the window's menus offer the same, and more)
   Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
   Shift+P  play it five times, and write means
   ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
+  F5 terrain   F6 tiles   F7 levels of detail   F8 errors   F9 loading   O  edges over it   Z  freeze the mesh, go on
   Left Alt+Enter, F11  full screen                        Esc  quit             F1  all keys
   1 to 7  another algorithm, in the order of -a's list
   Ctrl+O  open a terrain          Ctrl+T  open a texture                     Ctrl+,  settings

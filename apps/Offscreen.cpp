@@ -11,9 +11,11 @@
 #include <Inventor/SoDB.h>
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/elements/SoGLCacheContextElement.h>
+#include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/sensors/SoSensorManager.h>
 
 #include "Clock.h"
+#include "DebugViews.h"
 #include "FrameName.h"
 #include "ImageFile.h"
 #include "Replay.h"
@@ -45,6 +47,8 @@ public:
         sensors->processDelayQueue(TRUE);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         action_.apply(scene_.root());
+        legend_.update(scene_, SbVec2s(short(context_.width()), short(context_.height())));
+        if (legend_.root()->getNumChildren() > 0) action_.apply(legend_.root());
     }
 
     /// What a whole frame takes.
@@ -82,6 +86,7 @@ private:
     Scene& scene_;
     HeadlessContext& context_;
     SoGLRenderAction action_;
+    DebugLegend legend_;
 };
 
 std::optional<Error> OffscreenRun::animate(RunLog& log, const Animation& animation) {
@@ -95,6 +100,7 @@ std::optional<Error> OffscreenRun::animate(RunLog& log, const Animation& animati
         if (next->waitMs > 0.0) wait(next->waitMs);
         const double begin = nowMs();
         scene_.setPose(animation.pose(next->frame));
+        freezeInTime(scene_, options_, schedule.time(next->frame));
         if (auto problem = frame(log, next->frame, schedule.time(next->frame))) return problem;
         took.longestFrameMs = std::max(took.longestFrameMs, nowMs() - begin);
     }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "DebugViews.h"
 #include "FrameName.h"
 
 namespace app {
@@ -35,6 +36,9 @@ enum LongOption {
     MeasureError,
     Repeat,
     Stats,
+    DebugView,
+    Overlay,
+    FreezeAt,
     NoSettings,
     Summary,
     Help,
@@ -72,6 +76,9 @@ const option longOptions[] = {
     {"measure-error", required_argument, nullptr, MeasureError},
     {"repeat", required_argument, nullptr, Repeat},
     {"stats", no_argument, nullptr, Stats},
+    {"debug-view", required_argument, nullptr, DebugView},
+    {"overlay", no_argument, nullptr, Overlay},
+    {"freeze-at", required_argument, nullptr, FreezeAt},
     {"no-settings", no_argument, nullptr, NoSettings},
     {"summary", required_argument, nullptr, Summary},
     {"help", no_argument, nullptr, Help},
@@ -140,6 +147,7 @@ private:
     void takeFile(int code, const char* value);
     void takeNumber(int code, const char* value);
     void takeAlgorithm(const char* value);
+    void takeDebugView(const char* value);
     void takeSpacing(const char* value);
     void takeSize(int code, const char* value);
     void takeRawType(const char* value);
@@ -164,6 +172,7 @@ void Reader::take(int code, const char* value) {
     case 'e':
     case 'r':
     case 'g':
+    case FreezeAt:
     case ClipmapSize:
     case ClipmapLevels:
     case DetailLevels:
@@ -177,6 +186,9 @@ void Reader::take(int code, const char* value) {
     case Offscreen:
     case RawSize:
         takeSize(code, value);
+        break;
+    case DebugView:
+        takeDebugView(value);
         break;
     case Spacing:
         takeSpacing(value);
@@ -209,6 +221,9 @@ void Reader::takeFlag(int code) {
         break;
     case Stats:
         options.stats = true;
+        break;
+    case Overlay:
+        options.overlay = true;
         break;
     case NoSettings:
         options.noSettings = true;
@@ -268,6 +283,9 @@ void Reader::takeNumber(int code, const char* value) {
     case HeightScale:
         number(code, value, 0.0, true, options.heightScale);
         break;
+    case FreezeAt:
+        number(code, value, 0.0, false, options.freezeAt);
+        break;
     case 'r':
         whole(code, value, 0, options.triangleCount);
         break;
@@ -313,6 +331,14 @@ void Reader::whole(int code, const char* value, int lowest, std::optional<int>& 
 void Reader::takeAlgorithm(const char* value) {
     options.algorithm = findAlgorithm(value);
     if (!options.algorithm) refuse("-a", "one of " + algorithmNames(), std::string("\"") + value + "\"");
+}
+
+void Reader::takeDebugView(const char* value) {
+    options.debugPicture = findDebugPicture(value);
+    if (options.debugPicture) return;
+    std::string known;
+    for (const DebugPicture& picture : debugPictures()) known += (known.empty() ? "" : ", ") + std::string(picture.name);
+    refuse("--debug-view", "one of " + known, std::string("\"") + value + "\"");
 }
 
 void Reader::takeSpacing(const char* value) {

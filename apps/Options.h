@@ -12,6 +12,8 @@
 
 namespace app {
 
+struct DebugPicture;
+
 struct Options {
     std::string heightMap;                    ///< -h
     std::string scene;                        ///< --scene
@@ -39,6 +41,9 @@ struct Options {
     std::optional<glm::ivec2> rawSize;        ///< --raw-size, columns and rows
     std::optional<terrain::RawType> rawType;  ///< --raw-type
     std::optional<glm::ivec2> offscreen;      ///< --offscreen, pixels
+    const DebugPicture* debugPicture = nullptr;  ///< --debug-view
+    std::optional<double> freezeAt;           ///< --freeze-at, milliseconds of the animation
+    bool overlay = false;                     ///< --overlay
     bool fullScreen = false;                  ///< -f
     bool frustumCulling = false;              ///< -c
     bool animate = false;                     ///< -v

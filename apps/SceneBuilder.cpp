@@ -13,6 +13,7 @@
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoTerrainShape.h>
 
+#include "DebugViews.h"
 #include "Scene.h"
 
 namespace app {
@@ -94,6 +95,7 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     const Algorithm& algorithm = options_.algorithm ? *options_.algorithm : *findAlgorithm("roam");
     if (auto problem = scene_.putTerrain(algorithm, options_)) return problem;
     scene_.setFields(options_, tells_);
+    if (tells_) applyDebugOptions(scene_, options_);
     scene_.waitForTiles(waitsForTiles(options_));
     return std::nullopt;
 }
@@ -186,6 +188,7 @@ std::optional<Error> SceneBuilder::fromFile() {
     }
     chooseTerrain();
     scene_.setFields(options_, tells_);
+    if (tells_) applyDebugOptions(scene_, options_);
     scene_.waitForTiles(waitsForTiles(options_));
     SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
     bounds.apply(scene_.root_.get());
