@@ -94,11 +94,13 @@ std::optional<Error> Bench::run(ordered_json& out) {
     settle();
     buildTiles();
     measureFrames(out);
-    measureCpu(out);
-    scene_.setBackground(false);
-    measureTriangles(out);
-    if (request_.errorEvery > 0)
-        if (auto problem = measureError(out)) return problem;
+    if (!request_.framesOnly) {
+        measureCpu(out);
+        scene_.setBackground(false);
+        measureTriangles(out);
+        if (request_.errorEvery > 0)
+            if (auto problem = measureError(out)) return problem;
+    }
     if (!request_.pictures.empty())
         if (auto problem = takePictures()) return problem;
     if (request_.series) out["series"] = std::move(series_);
@@ -237,14 +239,15 @@ std::optional<Error> Bench::measureError(ordered_json& out) {
 // Where a third of the flight is over; half the size, for pages.
 std::optional<Error> Bench::takePictures() {
     constexpr int quality = 85;
-    const auto take = [this](const char* name) {
-        scene_.frame(0);
-        scene_.frame(request_.frames / 3);
+    const int place = request_.frames / 3;
+    const auto write = [this](const char* name) {
         return writeImage(request_.pictures + name, halved(scene_.context().readColor()), quality);
     };
-    if (auto problem = take("shaded.jpg")) return problem;
-    scene_.drawLines();
-    return take("lines.jpg");
+    scene_.frame(place);
+    scene_.frame(place);
+    if (auto problem = write("shaded.jpg")) return problem;
+    scene_.wireframe(place);
+    return write("lines.jpg");
 }
 
 }  // namespace
@@ -253,7 +256,8 @@ ordered_json toJson(const BenchRequest& r) {
     ordered_json json = {{"class", r.className},        {"fields", r.fields},          {"map", r.map},
                          {"texture", r.texture},        {"flight", r.flight},          {"frames", r.frames},
                          {"pixel_error", r.pixelError}, {"error_every", r.errorEvery}, {"decimate", r.decimate},
-                         {"seconds", r.seconds},        {"series", r.series},          {"pictures", r.pictures}};
+                         {"seconds", r.seconds},        {"series", r.series},          {"pictures", r.pictures},
+                         {"frames_only", r.framesOnly}};
     if (r.spacing) json["spacing"] = {r.spacing->x, r.spacing->y};
     if (r.heightScale) json["height_scale"] = *r.heightScale;
     return json;
@@ -273,6 +277,7 @@ BenchRequest benchRequest(const ordered_json& json) {
     r.seconds = json.at("seconds");
     r.series = json.at("series");
     r.pictures = json.at("pictures");
+    r.framesOnly = json.at("frames_only");
     if (json.contains("spacing")) r.spacing = {json["spacing"][0].get<double>(), json["spacing"][1].get<double>()};
     if (json.contains("height_scale")) r.heightScale = json["height_scale"].get<double>();
     return r;

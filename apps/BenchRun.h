@@ -23,11 +23,12 @@ struct BenchRequest {
     std::optional<double> heightScale;  ///< factor on heights; without it what suits the map
     int frames = 60;
     double pixelError = 2.0;
-    int errorEvery = 5;    ///< frames between measurements of the screen error; 0: none
-    int decimate = 1;      ///< takes each of so many columns and rows of the map
-    double seconds = 0.0;  ///< a series of frames that takes longer ends early, after three frames at least; 0: none does
-    bool series = false;   ///< tell all of each frame, too
-    std::string pictures;  ///< beginning of the names of two pictures, "...shaded.jpg" and "...lines.jpg"; empty: none
+    int errorEvery = 5;       ///< frames between measurements of the screen error; 0: none
+    bool framesOnly = false;  ///< neither processor time, triangles nor errors, which take flights of their own
+    int decimate = 1;         ///< takes each of so many columns and rows of the map
+    double seconds = 0.0;     ///< a series of frames that takes longer ends early, after three frames at least; 0: none does
+    bool series = false;      ///< tell all of each frame, too
+    std::string pictures;     ///< beginning of the names of two pictures, "...shaded.jpg" and "...lines.jpg"; empty: none
 };
 
 nlohmann::ordered_json toJson(const BenchRequest& request);

@@ -8,6 +8,7 @@
 
 #include <Inventor/SbViewportRegion.h>
 #include <Inventor/SoDB.h>
+#include <Inventor/SoInput.h>
 #include <Inventor/elements/SoGLCacheContextElement.h>
 #include <Inventor/fields/SoSFBool.h>
 #include <Inventor/fields/SoSFFloat.h>
@@ -19,9 +20,11 @@
 #include <Inventor/nodes/SoIndexedFaceSet.h>
 #include <Inventor/nodes/SoIndexedTriangleStripSet.h>
 #include <Inventor/nodes/SoLightModel.h>
+#include <Inventor/nodes/SoMaterial.h>
 #include <Inventor/nodes/SoNormal.h>
 #include <Inventor/nodes/SoNormalBinding.h>
 #include <Inventor/nodes/SoPerspectiveCamera.h>
+#include <Inventor/nodes/SoPolygonOffset.h>
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoTexture2.h>
 #include <Inventor/nodes/SoTextureCoordinate2.h>
@@ -66,6 +69,20 @@ terrain::HeightMap decimated(const terrain::HeightMap& map, int step) {
 bool isTopFirst(const BenchRequest& request, const terrain::HeightMap& map) {
     return request.flight.empty() && !request.spacing && !request.heightScale && map.projection.empty() &&
            map.spacing == glm::dvec2(1.0, 1.0);
+}
+
+// Whether a node reads these fields and nothing is left: SoFieldContainer::set() stops at a name that is none without a word.
+bool areFields(const std::string& className, const std::string& fields) {
+    const std::string text = "#Inventor V2.1 ascii\n" + className + " {\n" + fields + "\n}\n";
+    SoInput input;
+    input.setBuffer(text.data(), text.size());
+    SoNode* read = nullptr;
+    const bool valid = SoDB::read(&input, read) && read;
+    if (read) {
+        read->ref();
+        read->unref();
+    }
+    return valid;
 }
 
 }  // namespace
@@ -144,12 +161,22 @@ void BenchScene::addCamera() {
     group_->addChild(light);
 }
 
+// As SoTerrainTest has it: white under a texture, the colour of earth without one.
+void BenchScene::addMaterial() {
+    auto* material = new SoMaterial;
+    const SbColor color = request_.texture.empty() ? SbColor(0.62f, 0.57f, 0.47f) : SbColor(1.0f, 1.0f, 1.0f);
+    material->diffuseColor = color;
+    material->ambientColor = color * 0.4f;
+    group_->addChild(material);
+}
+
 std::optional<Error> BenchScene::addData() {
     root_ = NodePtr(new SoSeparator);
     root_->renderCaching = SoSeparator::OFF;
     root_->addChild(group_ = new SoSeparator);
     addCamera();
     group_->addChild(style_ = new SoDrawStyle);
+    addMaterial();
     if (!request_.texture.empty()) {
         auto texture = loadTexture(request_.texture, topFirst_);
         if (!texture) return texture.error();
@@ -183,7 +210,7 @@ std::optional<Error> BenchScene::makeNode() {
     set("verticesPerRow", grid_.columns);
     set("verticesPerColumn", grid_.rows);
     if (auto* error = dynamic_cast<SoSFFloat*>(node_->getField("pixelError"))) error->setValue(float(request_.pixelError));
-    if (!request_.fields.empty() && !node_->set(request_.fields.c_str()))
+    if (!request_.fields.empty() && !(areFields(name, request_.fields) && node_->set(request_.fields.c_str())))
         return Error{name, "fields of this class", '"' + request_.fields + '"'};
     return std::nullopt;
 }
@@ -200,7 +227,9 @@ void BenchScene::warmUp() {
 }
 
 double BenchScene::frame(int i) {
-    const Pose pose = flight_.at(double(i) / request_.frames);
+    // The standard flight is a circle; another ends where it ends.
+    const int last = request_.flight.empty() ? request_.frames : std::max(1, request_.frames - 1);
+    const Pose pose = flight_.at(double(i) / last);
     const double start = nowMs();
     camera_->position = pose.position;
     camera_->orientation = pose.orientation;
@@ -215,17 +244,25 @@ void BenchScene::setBackground(bool on) {
     if (auto* background = dynamic_cast<SoSFBool*>(node_->getField("background"))) background->setValue(on);
 }
 
-void BenchScene::drawLines() {
-    glClearColor(0.97f, 0.97f, 0.97f, 1.0f);
+void BenchScene::wireframe(int i) {
+    const SbColor paper(0.97f, 0.97f, 0.97f), lines(0.1f, 0.15f, 0.2f);
+    if (!ink_) {
+        glClearColor(paper[0], paper[1], paper[2], 1.0f);
+        auto* light = new SoLightModel;
+        light->model = SoLightModel::BASE_COLOR;
+        const int last = group_->getNumChildren() - 1;
+        group_->insertChild(ink_ = new SoBaseColor, last);
+        group_->insertChild(light, last);
+        group_->insertChild(new SoTexture2, last);
+        group_->insertChild(new SoPolygonOffset, last);
+    }
+    ink_->rgb = paper;
+    style_->style = SoDrawStyle::FILLED;
+    frame(i);
+    ink_->rgb = lines;
     style_->style = SoDrawStyle::LINES;
-    auto* ink = new SoBaseColor;
-    ink->rgb.setValue(0.1f, 0.15f, 0.2f);
-    auto* light = new SoLightModel;
-    light->model = SoLightModel::BASE_COLOR;
-    const int last = group_->getNumChildren() - 1;
-    group_->insertChild(ink, last);
-    group_->insertChild(light, last);
-    group_->insertChild(new SoTexture2, last);
+    action_.apply(root_.get());
+    glFinish();
 }
 
 }  // namespace app

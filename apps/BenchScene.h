@@ -12,8 +12,8 @@
 #include "TerrainGrid.h"
 #include "gl/HeadlessContext.h"
 
+class SoBaseColor;
 class SoDrawStyle;
-class SoLightModel;
 class SoNormalBinding;
 class SoPerspectiveCamera;
 class SoSeparator;
@@ -49,8 +49,9 @@ public:
     double frame(int i);
     /// Whether tiles may be built while coarser ones stand in, or each frame is complete.
     void setBackground(bool on);
-    /// Draws the triangles' edges alone from now on, dark on a light ground.
-    void drawLines();
+    /// Draws the edges of frame i's triangles, dark on a light ground that hides those behind. Later frames are drawn in this
+    /// style.
+    void wireframe(int i);
 
     const TerrainGrid& grid() const { return grid_; }
     SoSeparator* group() const { return group_; }
@@ -61,6 +62,7 @@ private:
     std::optional<terrain::Error> openFlight();
     std::optional<terrain::Error> addData();
     void addCamera();
+    void addMaterial();
     std::optional<terrain::Error> makeNode();
 
     const BenchRequest& request_;
@@ -71,6 +73,7 @@ private:
     SoSeparator* group_ = nullptr;
     SoPerspectiveCamera* camera_ = nullptr;
     SoDrawStyle* style_ = nullptr;
+    SoBaseColor* ink_ = nullptr;
     SoNormalBinding* binding_ = nullptr;
     NodePtr<SoNode> node_;
     TerrainGrid grid_;

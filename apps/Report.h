@@ -35,6 +35,7 @@ struct Subject {
 struct Measurement {
     std::string label;
     BenchRequest request;
+    int rank = 0;                   ///< those of a lower one are measured first
     double weight = 1.0;            ///< about how long it takes, relative to others
     nlohmann::ordered_json result;  ///< of runBench(); null when it failed or was left out
     std::string problem;            ///< why
@@ -106,7 +107,9 @@ struct Finding {
     std::string text;  ///< "233 times fewer than SoQuadMesh"
 };
 std::vector<Finding> findings(const ReportPlan& plan);
-std::string summarySentence(const ReportOptions& options, const ReportPlan& plan);
+/// Which node was quickest; who kept pixelError and who did not.
+std::string summarySentence(const ReportPlan& plan);
+std::string errorSentence(const ReportOptions& options, const ReportPlan& plan);
 
 /// A plot of a report.
 struct Plot {

@@ -101,7 +101,7 @@ ordered_json reportJson(const ReportOptions& options, const ReportPlan& plan) {
     all["columns"] = options.columns;
     all["rows"] = options.rows;
     for (const auto& [name, value] : describeMachine(plan)) all["machine"][name] = value;
-    all["summary"] = summarySentence(options, plan);
+    all["summary"] = summarySentence(plan);
     for (const Measurement& m : plan.measurements) {
         ordered_json request = toJson(m.request);
         request.erase("pictures");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <sstream>
@@ -32,6 +33,16 @@ std::string contentsOf(const std::string& path) {
 
 std::string nameOf(const std::string& path) {
     return escaped(path.substr(path.find_last_of('/') + 1));
+}
+
+// A class name that may be broken before its words.
+std::string breakable(const std::string& name) {
+    std::string result;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const bool word = i > 0 && std::isupper(std::uint8_t(name[i])) && std::islower(std::uint8_t(name[i - 1]));
+        result += (word ? "<wbr>" : "") + escaped(name.substr(i, 1));
+    }
+    return result;
 }
 
 // A sample of a curve's colour, as all plots have it.
@@ -102,8 +113,9 @@ void Page::writeHead() {
             "initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<title>"
          << map << ": terrain report</title>\n<style>" << reportStyle
          << "</style></head><body><main>\n<header><div><p class=\"kind\">Terrain report</p><h1>" << map
-         << "</h1>\n<p class=\"summary\">" << escaped(summarySentence(options_, plan_)) << "</p>\n<ul class=\"facts\"><li>"
-         << grouped(options_.columns) << " × " << grouped(options_.rows) << " samples</li><li>"
+         << "</h1>\n<p class=\"summary\">" << escaped(summarySentence(plan_)) << "</p>\n<p class=\"errors\">"
+         << escaped(errorSentence(options_, plan_)) << "</p>\n<ul class=\"facts\"><li>" << grouped(options_.columns) << " × "
+         << grouped(options_.rows) << " samples</li><li>"
          << (options_.request.flight.empty() ? std::string("standard flight") : "flight " + nameOf(options_.request.flight)) << ", "
          << options_.request.frames << " frames</li><li>1024 × 768 pixels</li><li>pixelError " << options_.request.pixelError
          << "</li>"
@@ -160,7 +172,7 @@ void Page::writeTableHead() {
 
 void Page::writeRow(const Subject& subject) {
     const Measurement& m = plan_.of(subject);
-    out_ << "<tr><th scope=\"row\">" << chip(subject.color, subject.dashed) << escaped(subject.className)
+    out_ << "<tr><th scope=\"row\">" << chip(subject.color, subject.dashed) << breakable(subject.className)
          << (subject.fields.empty() ? "" : "<small>" + escaped(subject.fields) + "</small>") << "</th>";
     if (!m.measured()) {
         out_ << "<td class=\"problem\" colspan=\"" << figures_.size() << "\">not measured: " << escaped(m.problem)

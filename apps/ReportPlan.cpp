@@ -79,13 +79,14 @@ private:
     }
 
     // Each at most once: a place that has the request already is used again.
-    std::size_t add(const std::string& label, const BenchRequest& request) {
+    std::size_t add(const std::string& label, const BenchRequest& request, int rank) {
         auto place = std::find_if(plan_.measurements.begin(), plan_.measurements.end(),
                                   [&](const Measurement& m) { return sameScene(m.request, request); });
         if (place == plan_.measurements.end()) {
-            place = plan_.measurements.insert(place, Measurement{label, request, weight(request), nullptr, {}});
+            place = plan_.measurements.insert(place, Measurement{label, request, rank, weight(request), nullptr, {}});
         } else {
-            place->request.errorEvery = std::max(place->request.errorEvery, request.errorEvery);
+            place->request.framesOnly = place->request.framesOnly && request.framesOnly;
+            place->rank = std::min(place->rank, rank);
         }
         return std::size_t(place - plan_.measurements.begin());
     }
@@ -97,8 +98,8 @@ private:
             std::none_of(std::begin(keepErrors), std::end(keepErrors), [&](const char* name) { return r.className == name; }) &&
             r.className != clipmap;
         const double perFrame = full ? 3.0e-7 * samples : 0.03;
-        const double perError = r.errorEvery > 0 ? 3e-8 * samples : 0.0;
-        return 0.3 + 6e-7 * samples + r.frames * (perFrame + perError);
+        const double perError = r.framesOnly ? 0.0 : 3e-8 * samples;
+        return 0.3 + 6e-7 * samples + r.frames * ((r.framesOnly ? 0.4 : 1.0) * perFrame + perError);
     }
 
     void addNodes() {
@@ -109,7 +110,7 @@ private:
             r.pictures = options_.work + "/picture" + std::to_string(plan_.measurements.size()) + "-";
 #endif
             // Twice the same in --nodes are two rows.
-            plan_.measurements.push_back({subject.label, r, weight(r), nullptr, {}});
+            plan_.measurements.push_back({subject.label, r, 0, weight(r), nullptr, {}});
         }
     }
 
@@ -123,14 +124,15 @@ private:
             for (const double error : errors) {
                 BenchRequest r = request(subject.className, "");
                 r.pixelError = error;
-                const std::size_t place = add(subject.label + ", pixelError " + number(error), r);
+                const std::size_t place =
+                    add(subject.label + ", pixelError " + number(error), r, error == 1.0 || error == 4.0 ? 1 : 2);
                 plan_.uses.push_back({Chapter::Error, subject.label, subject.color, false, error, number(error), place});
             }
         }
         if (!has(clipmap)) return;
         for (const int size : {63, 127, 255, 511}) {
             if (size > shorterSide() || (options_.quick && size != 63)) continue;
-            const std::size_t place = add(clipmapLabel(size), request(clipmap, "clipmapSize " + std::to_string(size)));
+            const std::size_t place = add(clipmapLabel(size), request(clipmap, "clipmapSize " + std::to_string(size)), 1);
             plan_.uses.push_back(
                 {Chapter::Error, clipmap, knownSubjects().back().color, false, double(size), std::to_string(size), place});
         }
@@ -150,8 +152,9 @@ private:
             for (int level = 1; level <= levels; ++level) {
                 BenchRequest r = request(clipmap, "clipmapSize " + std::to_string(size) + " levels " + std::to_string(level));
                 r.pixelError = 0.0;
-                r.errorEvery = 0;
-                const std::size_t place = add(clipmapLabel(size) + ", levels " + std::to_string(level), r);
+                r.framesOnly = true;
+                const std::size_t place =
+                    add(clipmapLabel(size) + ", levels " + std::to_string(level), r, size == 63 || size == 255 ? 2 : 1);
                 plan_.uses.push_back({Chapter::Clipmap, "clipmapSize " + std::to_string(size), color, false, double(level),
                                       std::to_string(level), place});
             }
@@ -171,9 +174,9 @@ private:
                 const int columns = (options_.columns - 1) / step + 1, rows = (options_.rows - 1) / step + 1;
                 BenchRequest r = request(subject.className, subject.fields);
                 r.decimate = step;
-                r.errorEvery = 0;
+                r.framesOnly = true;
                 const std::string size = std::to_string(columns) + " x " + std::to_string(rows);
-                const std::size_t place = add(subject.label + ", " + size, r);
+                const std::size_t place = add(subject.label + ", " + size, r, step == 4 || step == 16 ? 1 : 2);
                 plan_.uses.push_back(
                     {Chapter::Size, subject.label, subject.color, subject.dashed, double(std::max(columns, rows)), size, place});
             }

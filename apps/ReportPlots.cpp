@@ -257,7 +257,7 @@ Result<std::vector<Plot>> drawPlots(const ReportOptions& options, const ReportPl
           "Largest error in pixels over triangles",
           {},
           {}},
-         ticks("x") + ticks("y") + "set xlabel 'triangles, mean'\nset ylabel 'largest error, px'\n");
+         ticks("x") + ticks("y") + "set rmargin 5\nset xlabel 'triangles, mean'\nset ylabel 'largest error, px'\n");
     draw(Chapter::Size, framesASecond,
          {"sizes",
           "Frames a second over the size of the map",

@@ -33,14 +33,14 @@ public:
 
     double seconds() const { return (nowMs() - start_) / 1000.0; }
 
-    void begin(std::size_t i) {
+    void begin(const Measurement& m) {
         std::string left;
         if (done_ > 0.0) left = ", about " + minutesAndSeconds(seconds() / done_ * (all_ - done_)) + " left";
-        std::fprintf(stderr, "%s%3zu of %zu  %3.0f %%  %s%s  %s%s", terminal_ ? "\r\033[K" : "", i + 1, plan_.measurements.size(),
-                     100.0 * done_ / all_, minutesAndSeconds(seconds()).c_str(), left.c_str(), plan_.measurements[i].label.c_str(),
-                     terminal_ ? "" : "\n");
+        std::fprintf(stderr, "%s%3zu of %zu  %3.0f %%  %s%s  %s%s", terminal_ ? "\r\033[K" : "", ++count_,
+                     plan_.measurements.size(), 100.0 * done_ / all_, minutesAndSeconds(seconds()).c_str(), left.c_str(),
+                     m.label.c_str(), terminal_ ? "" : "\n");
         std::fflush(stderr);
-        done_ += plan_.measurements[i].weight;
+        done_ += m.weight;
     }
 
     void say(const std::string& text) { std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", text.c_str()); }
@@ -52,7 +52,16 @@ private:
     double start_ = nowMs();
     double all_ = 0.0;
     double done_ = 0.0;
+    std::size_t count_ = 0;
 };
+
+// So that every plot has some points, should time be over before the last measurement.
+std::vector<Measurement*> inOrder(ReportPlan& plan) {
+    std::vector<Measurement*> order;
+    for (Measurement& m : plan.measurements) order.push_back(&m);
+    std::stable_sort(order.begin(), order.end(), [](const Measurement* a, const Measurement* b) { return a->rank < b->rank; });
+    return order;
+}
 
 // A reason without the name of this program before it.
 std::string plainReason(const std::string& reason) {
@@ -66,15 +75,15 @@ bool measureReport(const ReportOptions& options, ReportPlan& plan) {
     Progress progress(plan);
     const double end = 60.0 * options.minutes - std::min(lastSeconds, 6.0 * options.minutes);
     std::size_t leftOut = 0;
-    for (std::size_t i = 0; i < plan.measurements.size(); ++i) {
-        Measurement& m = plan.measurements[i];
+    for (Measurement* next : inOrder(plan)) {
+        Measurement& m = *next;
         const double left = end - progress.seconds();
         if (left <= 0.0) {
             m.problem = "no time was left for it";
             ++leftOut;
             continue;
         }
-        progress.begin(i);
+        progress.begin(m);
         BenchOutcome outcome = benchInProcess(m.request, left, false);
         if (interrupted()) {
             progress.say(std::string(program) + ": interrupted, nothing is written");

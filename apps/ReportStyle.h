@@ -18,10 +18,11 @@ h1 { font-size: clamp(26px, 4vw, 40px); line-height: 1.15; margin: 4px 0 16px; o
 h2 { font-size: 22px; margin: 48px 0 12px; }
 h3 { font-size: 16px; margin: 0 0 6px; }
 .summary { font-size: 18px; margin: 0 0 16px; }
+.errors { margin: 0 0 16px; color: var(--soft); }
 .facts, .keys { list-style: none; margin: 0; padding: 0; display: flex; flex-wrap: wrap; gap: 6px 10px; }
 .facts li { background: var(--paper); border: 1px solid var(--line); border-radius: 99px; padding: 2px 12px; font-size: 14px; color: var(--soft); }
 .note { border-left: 3px solid var(--accent); padding: 4px 12px; color: var(--soft); font-size: 15px; }
-.findings { display: grid; grid-template-columns: repeat(auto-fit, minmax(205px, 1fr)); gap: 14px; margin-top: 28px; }
+.findings { display: grid; grid-template-columns: repeat(auto-fit, minmax(160px, 1fr)); gap: 14px; margin-top: 28px; }
 .finding { background: var(--paper); border: 1px solid var(--line); border-top: 4px solid var(--c); border-radius: 8px; padding: 12px 16px; }
 .finding h3 { color: var(--soft); font-weight: 500; font-size: 14px; }
 .finding p { margin: 0; font-size: 14px; color: var(--soft); overflow-wrap: anywhere; }
@@ -67,7 +68,7 @@ dl { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 6px 
 dt { color: var(--soft); } dd { margin: 0; overflow-wrap: anywhere; }
 code { background: var(--paper); border: 1px solid var(--line); border-radius: 4px; padding: 1px 5px; font-size: 14px; overflow-wrap: anywhere; }
 @media (max-width: 820px) { header { grid-template-columns: 1fr; gap: 20px; } main { padding: 20px 14px 48px; } }
-@media (max-width: 520px) { dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 10px; } tbody th { max-width: 150px; white-space: normal; overflow-wrap: anywhere; } }
+@media (max-width: 520px) { dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 10px; } tbody th { min-width: 128px; white-space: normal; } }
 @media print { body { background: #fff; } figure, .finding, .wide { break-inside: avoid; } }
 )css";
 

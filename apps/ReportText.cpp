@@ -44,7 +44,7 @@ const Subject* leastOfOurs(const ReportPlan& plan, const char* name) {
 }
 
 std::string significant(double value) {
-    return grouped(value, value < 1.0 ? 2 : value < 20.0 ? 1 : 0);
+    return grouped(value, value == 0.0 ? 0 : value < 1.0 ? 2 : value < 20.0 ? 1 : 0);
 }
 
 std::string shortest(double value) {
@@ -75,23 +75,6 @@ void addFinding(std::vector<Finding>& all, const ReportPlan& plan, const char* n
     all.push_back(finding);
 }
 
-// Who kept pixelError, who was to and did not, and whose error is what it is.
-std::string sentenceOfErrors(const ReportOptions& options, const ReportPlan& plan) {
-    std::vector<std::string> keepers, others;
-    for (const Subject& subject : plan.subjects) {
-        const auto error = figureOf(plan, subject, "error_px_max");
-        const bool full = subject.dashed || subject.className == "SoBruteForceTerrain";
-        if (!error || full) continue;
-        if (kept(plan, subject)) keepers.push_back(subject.label);
-        if (!kept(plan, subject)) others.push_back(subject.label + " was off by up to " + grouped(*error, 2) + " px");
-    }
-    std::string text;
-    if (!keepers.empty())
-        text += " " + listed(keepers) + " kept every sample in view within " + shortest(options.request.pixelError) + " px.";
-    if (!others.empty()) text += " " + listed(others) + ".";
-    return text;
-}
-
 }  // namespace
 
 std::vector<Finding> findings(const ReportPlan& plan) {
@@ -104,7 +87,7 @@ std::vector<Finding> findings(const ReportPlan& plan) {
     return all;
 }
 
-std::string summarySentence(const ReportOptions& options, const ReportPlan& plan) {
+std::string summarySentence(const ReportPlan& plan) {
     const Subject* best = leastOfOurs(plan, "frame_ms_median");
     if (!best) return "None of SoTerrain's nodes could be measured.";
     const double ms = *figureOf(plan, *best, "frame_ms_median"), triangles = *figureOf(plan, *best, "triangles");
@@ -115,7 +98,23 @@ std::string summarySentence(const ReportOptions& options, const ReportPlan& plan
         text += "Coin's " + coin->label + " (" + significant(other) + " ms, " + grouped(*figureOf(plan, *coin, "triangles")) +
                 " triangles)";
     }
-    return text + "." + sentenceOfErrors(options, plan);
+    return text + ".";
+}
+
+std::string errorSentence(const ReportOptions& options, const ReportPlan& plan) {
+    std::vector<std::string> keepers, others;
+    for (const Subject& subject : plan.subjects) {
+        const auto error = figureOf(plan, subject, "error_px_max");
+        const bool full = subject.dashed || subject.className == "SoBruteForceTerrain";
+        if (!error || full) continue;
+        if (kept(plan, subject)) keepers.push_back(subject.label);
+        if (!kept(plan, subject)) others.push_back(subject.label + " was off by up to " + grouped(*error, 2) + " px");
+    }
+    std::string text;
+    if (!keepers.empty())
+        text += listed(keepers) + " kept every sample in view within " + shortest(options.request.pixelError) + " px.";
+    if (!others.empty()) text += (text.empty() ? "" : " ") + listed(others) + ".";
+    return text;
 }
 
 }  // namespace app

@@ -159,6 +159,9 @@ int report(app::ReportOptions& options) {
     app::ReportPlan plan = app::planReport(options);
     constexpr int interruptedStatus = 130;
     if (!app::measureReport(options, plan)) return interruptedStatus;
+    const auto isMeasured = [](const app::Measurement& m) { return m.measured(); };
+    if (std::none_of(plan.measurements.begin(), plan.measurements.end(), isMeasured))
+        return complain({options.folder, "a report of at least one node", "none that could be measured, and nothing is written"});
     const auto plots = app::drawPlots(options, plan);
     if (app::interrupted()) return interruptedStatus;
     if (!plots) return complain(plots.error());
@@ -166,9 +169,9 @@ int report(app::ReportOptions& options) {
                                                    {"report.json", app::reportJson(options, plan).dump(1) + '\n'},
                                                    {"report.html", app::reportPage(options, plan, plots.value())}}))
         return complain(*problem);
-    std::printf("%s\n%s/report.html\n", app::summarySentence(options, plan).c_str(), options.folder.c_str());
-    const bool complete =
-        std::all_of(plan.measurements.begin(), plan.measurements.end(), [](const app::Measurement& m) { return m.measured(); });
+    std::printf("%s\n%s\n%s/report.html\n", app::summarySentence(plan).c_str(), app::errorSentence(options, plan).c_str(),
+                options.folder.c_str());
+    const bool complete = std::all_of(plan.measurements.begin(), plan.measurements.end(), isMeasured);
     return complete ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -26,7 +26,7 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
-        if tag not in ("meta", "img", "br", "link", "path", "circle", "rect", "use", "feflood", "fecomposite"):
+        if tag not in ("meta", "img", "br", "wbr", "link", "path", "circle", "rect", "use", "feflood", "fecomposite"):
             self.open.append(tag)
         self.references += [attributes[name] for name in ("src", "href", "xlink:href", "action", "data") if name in attributes]
         if "id" in attributes:

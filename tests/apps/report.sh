@@ -33,11 +33,13 @@ none 1 'gnuplot: expected this program' "$SCRATCH/map.pgm"
 PATH=$path
 expect 1 "$REPORT" "$SCRATCH/map.pgm" -o "$SCRATCH/map.pgm/folder"
 grep -q "expected a folder that can be written" "$SCRATCH/err" || fail "no message about the folder"
+expect 1 "$REPORT" "$SCRATCH/map.pgm" --quick --nodes SoNoSuchNode -o "$SCRATCH/none"
+grep -q "SoNoSuchNode is not measured: SoNoSuchNode: expected" "$SCRATCH/err" && [ ! -e "$SCRATCH/none" ] || fail "a report of nothing"
 
 # A class that is none has a row that says so, and the page comes; the others are as the benchmark measures them.
 nodes=SoIndexedFaceSet,SoQuadMesh,SoBruteForceTerrain,SoROAMTerrain,SoChunkedLoDTerrain,SoGeoMipmapTerrain,SoGeometryClipmapTerrain
 expect 1 "$REPORT" "$SCRATCH/map.pgm" --quick --nodes "$nodes,SoNoSuch<Node" -o "$SCRATCH/report"
-grep -q 'offscreen rendering' "$SCRATCH/report/report.csv" && skip "no EGL with desktop OpenGL"
+grep -q 'offscreen rendering' "$SCRATCH/err" && skip "no EGL with desktop OpenGL"
 grep -qE '^ *[0-9]+ of [0-9]+ .*about [0-9:]+ left' "$SCRATCH/err" || fail "no progress"
 expect 0 "$BUILD/soterrain-bench" --map "$SCRATCH/map.pgm" --frames 12 --error-every 4 --nodes "$nodes" --json "$SCRATCH/bench.json"
 python3 "$SOURCE/tests/apps/report.py" "$SCRATCH/report" "$SCRATCH/bench.json" || fail "the report is not what it should be"
