@@ -77,7 +77,10 @@ void applyDebugOptions(Scene& scene, const Options& options) {
 }
 
 void freezeInTime(Scene& scene, const Options& options, double timeMs) {
-    if (options.freezeAt && timeMs > *options.freezeAt && !isFrozen(scene)) setFrozen(scene, true);
+    if (!options.freezeAt) return;
+    // A flight may begin again.
+    const bool late = timeMs > *options.freezeAt;
+    if (late != isFrozen(scene)) setFrozen(scene, late);
 }
 
 }  // namespace app

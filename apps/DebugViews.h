@@ -41,7 +41,7 @@ bool isFrozen(const Scene& scene);
 void setFrozen(Scene& scene, bool on);
 /// As the options want it from the start; they are told on standard error where they have no effect.
 void applyDebugOptions(Scene& scene, const Options& options);
-/// Freezes the mesh once the animation is beyond --freeze-at.
+/// Freezes the mesh where the animation is beyond --freeze-at. To be called before the frame is drawn.
 void freezeInTime(Scene& scene, const Options& options, double timeMs);
 
 /// Explains the colours of a picture, in its upper right corner.

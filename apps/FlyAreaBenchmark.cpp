@@ -81,6 +81,7 @@ void FlyArea::advanceReplay(double now) {
     const bool isPaced = replay_->flights() == 1 && !ends_ && replay_->isMeasured() && !replay_->ends();
     if (isPaced && now - lastDueMs_ < replay_->animation().schedule.stepMs - 0.5) return;
     if (!replay_->next()) return endOfAnimation();
+    freezeInTime(scene_, options_, replay_->timeMs());
     due_ = true;
     lastDueMs_ = now;
     scheduleRedraw();

@@ -115,6 +115,7 @@ std::optional<Error> OffscreenRun::replay(RunLog& log, const Animation& animatio
     Replay replay(scene_, animation, options_.repeat.value_or(1), options_.repeat.has_value());
     while (replay.next()) {
         if (replay.begins()) log.beginRepetition();
+        freezeInTime(scene_, options_, replay.timeMs());
         if (!replay.isMeasured()) {
             drawTimed();
         } else if (auto problem = frame(log, replay.frame(), replay.timeMs())) {

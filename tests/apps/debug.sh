@@ -20,12 +20,15 @@ grep -q 'expected one of none, tiles, levels, errors, loading, found "colours"' 
 EGL_PLATFORM=surfaceless expect 0 "$TEST" $map -a quadmesh --debug-view tiles --offscreen=64x48 --output "$SCRATCH/other.ppm"
 [ "$(grep -c -e '--debug-view.*no effect on quadmesh' "$SCRATCH/err")" = 1 ] || { fail "no word about a shape without pictures"; cat "$SCRATCH/err"; }
 
-# Frozen, the mesh has as many triangles in all frames that follow.
-EGL_PLATFORM=surfaceless expect 0 "$TEST" $map --frames 6 -A 6000 --freeze-at 2500 -p "$SCRATCH/profile.csv" --offscreen=160x120
-column=$(head -1 "$SCRATCH/profile.csv" | tr ',' '\n' | grep -n '^triangles$' | cut -d: -f1)
-counts=$(tail -n +2 "$SCRATCH/profile.csv" | cut -d, -f"$column")
-[ "$(echo "$counts" | tail -n +3 | sort -u | wc -l)" = 1 ] || fail "--freeze-at lets the mesh change: "$counts
-[ "$(echo "$counts" | head -3 | sort -u | wc -l)" -gt 1 ] || fail "--freeze-at freezes too early: "$counts
+# Frozen, the mesh has as many triangles in all frames that follow: of an animation, and of a flight that is replayed.
+EGL_PLATFORM=surfaceless expect 0 "$TEST" $map --frames 6 -A 6000 --record "$SCRATCH/flight.csv" --offscreen=64x48
+for animation in "--frames 6 -A 6000" "--flight $SCRATCH/flight.csv --frames 6 -A 6000"; do
+    EGL_PLATFORM=surfaceless expect 0 "$TEST" $map $animation --freeze-at 2500 -p "$SCRATCH/profile.csv" --offscreen=160x120
+    column=$(head -1 "$SCRATCH/profile.csv" | tr ',' '\n' | grep -n '^triangles$' | cut -d: -f1)
+    counts=$(tail -n +2 "$SCRATCH/profile.csv" | cut -d, -f"$column")
+    [ "$(echo "$counts" | tail -n +3 | sort -u | wc -l)" = 1 ] || fail "--freeze-at lets the mesh change in $animation: "$counts
+    [ "$(echo "$counts" | head -3 | sort -u | wc -l)" -gt 1 ] || fail "--freeze-at freezes too early in $animation: "$counts
+done
 
 . "$(dirname "$0")/display.sh"
 open_window $map --no-settings
