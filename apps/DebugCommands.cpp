@@ -22,10 +22,12 @@ std::vector<Command> debugCommands() {
                         [&picture](const MainWindow& w) { return debugPicture(w.scene()) == picture.value; }, isPossible, true});
     }
     rows.push_back({"", Menu::View, "", "", "", nullptr});
-    rows.push_back({"edges", Menu::View, "E&dges over it", "O", "Draw the edges of the triangles over the terrain or the picture of it",
+    rows.push_back({"edges", Menu::View, "E&dges over it", "O",
+                    "Draw the edges of the triangles over the terrain or the picture of it",
                     [](MainWindow& w) { setEdges(w.scene(), !hasEdges(w.scene())); },
                     [](const MainWindow& w) { return hasEdges(w.scene()); }, isPossible});
-    rows.push_back({"freeze", Menu::View, "Free&ze mesh", "Z", "Keep the mesh for this view, to fly around it; again: follow the view",
+    rows.push_back({"freeze", Menu::View, "Free&ze mesh", "Z",
+                    "Keep the mesh for this view, to fly around it; again: follow the view",
                     [](MainWindow& w) { setFrozen(w.scene(), !isFrozen(w.scene())); },
                     [](const MainWindow& w) { return isFrozen(w.scene()); }, isPossible});
     return rows;

@@ -42,28 +42,29 @@ std::vector<DebugLegend::Row> DebugLegend::rowsFor(int picture, float pixelError
         rows.push_back({{colour.r, colour.g, colour.b}, text, blends});
     };
     switch (picture) {
-        case SoTerrainShape::LEVELS:
-            for (int level = 0; level <= terrain::kCoarsestLevel; ++level) {
-                const std::string size = std::to_string(1 << level);
-                add(terrain::levelColour(level), std::to_string(level) + (level == 0 ? ": every sample" : ": cells of " + size));
-            }
-            rows.back().text += " or more";
-            break;
-        case SoTerrainShape::ERRORS: {
-            const double allowed = pixelError > 0.0f ? double(pixelError) : 1.0;
-            add(terrain::kBrokenColour, "more than " + pixels(allowed));
-            const int steps = int(terrain::errorRamp().size()) - 1;
-            for (int i = steps; i >= 0; --i)
-                add(terrain::errorColour(float(i) / float(steps)), pixels(allowed * double(i) / double(steps)), i > 0);
-            break;
+    case SoTerrainShape::LEVELS:
+        for (int level = 0; level <= terrain::kCoarsestLevel; ++level) {
+            const std::string size = std::to_string(1 << level);
+            add(terrain::levelColour(level), std::to_string(level) + (level == 0 ? ": every sample" : ": cells of " + size));
         }
-        case SoTerrainShape::LOADING:
-            add(terrain::kSettledColour, "as wanted");
-            add(terrain::kStandInColour, "finer ones are on their way");
-            add(terrain::kNewColour, "new in this frame");
-            add(terrain::kNewStandInColour, "new, and finer to come");
-            break;
-        default: break;
+        rows.back().text += " or more";
+        break;
+    case SoTerrainShape::ERRORS: {
+        const double allowed = pixelError > 0.0f ? double(pixelError) : 1.0;
+        add(terrain::kBrokenColour, "more than " + pixels(allowed));
+        const int steps = int(terrain::errorRamp().size()) - 1;
+        for (int i = steps; i >= 0; --i)
+            add(terrain::errorColour(float(i) / float(steps)), pixels(allowed * double(i) / double(steps)), i > 0);
+        break;
+    }
+    case SoTerrainShape::LOADING:
+        add(terrain::kSettledColour, "as wanted");
+        add(terrain::kStandInColour, "finer ones are on their way");
+        add(terrain::kNewColour, "new in this frame");
+        add(terrain::kNewStandInColour, "new, and finer to come");
+        break;
+    default:
+        break;
     }
     return rows;
 }
@@ -73,7 +74,8 @@ void DebugLegend::addPanel(float x, float y, float width, float height, const fl
     const float points[4][3] = {{x, y, 0.0f}, {x + width, y, 0.0f}, {x + width, y + height, 0.0f}, {x, y + height, 0.0f}};
     corners->point.setValues(0, 4, points);
     auto* colours = new SoBaseColor;
-    const float corner[4][3] = {{low[0], low[1], low[2]}, {low[0], low[1], low[2]}, {high[0], high[1], high[2]}, {high[0], high[1], high[2]}};
+    const float corner[4][3] = {
+        {low[0], low[1], low[2]}, {low[0], low[1], low[2]}, {high[0], high[1], high[2]}, {high[0], high[1], high[2]}};
     colours->rgb.setValues(0, 4, corner);
     auto* faces = new SoFaceSet;
     faces->numVertices = 4;
@@ -134,10 +136,12 @@ void DebugLegend::build(const std::vector<Row>& rows, const SbVec2s& size) {
         const float middle = y - 0.5f * rowHeight;
         if (rows[i].blends) {
             addPanel(left + gap, middle - rowHeight, swatchWidth, rowHeight, below, rows[i].colour);
-            if (i == 0 || !rows[i - 1].blends) addPanel(left + gap, middle, swatchWidth, 0.5f * rowHeight - 1.0f, rows[i].colour, rows[i].colour);
+            if (i == 0 || !rows[i - 1].blends)
+                addPanel(left + gap, middle, swatchWidth, 0.5f * rowHeight - 1.0f, rows[i].colour, rows[i].colour);
         } else {
             const bool endsBlend = i > 0 && rows[i - 1].blends;
-            addPanel(left + gap, y - rowHeight + 1.0f, swatchWidth, endsBlend ? 0.5f * rowHeight : rowHeight - 2.0f, rows[i].colour, rows[i].colour);
+            addPanel(left + gap, y - rowHeight + 1.0f, swatchWidth, endsBlend ? 0.5f * rowHeight : rowHeight - 2.0f, rows[i].colour,
+                     rows[i].colour);
         }
         addText(left + swatchWidth + 2.0f * gap, middle - 4.0f, rows[i].text);
     }
@@ -146,7 +150,8 @@ void DebugLegend::build(const std::vector<Row>& rows, const SbVec2s& size) {
 void DebugLegend::update(const Scene& scene, const SbVec2s& size) {
     const int picture = debugPicture(scene);
     const float allowed = canDebug(scene) ? static_cast<SoTerrainShape*>(scene.terrain())->pixelError.getValue() : 0.0f;
-    const std::string wanted = std::to_string(picture) + ' ' + std::to_string(allowed) + ' ' + std::to_string(size[0]) + ' ' + std::to_string(size[1]);
+    const std::string wanted =
+        std::to_string(picture) + ' ' + std::to_string(allowed) + ' ' + std::to_string(size[0]) + ' ' + std::to_string(size[1]);
     if (wanted == shown_) return;
     shown_ = wanted;
     build(rowsFor(picture, allowed), size);

@@ -23,8 +23,10 @@ const std::vector<DebugPicture>& debugPictures() {
     static const std::vector<DebugPicture> pictures = {
         {"none", "T&errain itself", "Show the terrain as it is", SoTerrainShape::NONE},
         {"tiles", "T&iles", "Show each tile or block of the mesh in a colour of its own", SoTerrainShape::TILES},
-        {"levels", "Le&vels of detail", "Show how large triangles are, from yellow (full detail) to violet", SoTerrainShape::LEVELS},
-        {"errors", "E&rrors in pixels", "Show how far the mesh is from the samples, from blue to red (pixel error)", SoTerrainShape::ERRORS},
+        {"levels", "Le&vels of detail", "Show how large triangles are, from yellow (full detail) to violet",
+         SoTerrainShape::LEVELS},
+        {"errors", "E&rrors in pixels", "Show how far the mesh is from the samples, from blue to red (pixel error)",
+         SoTerrainShape::ERRORS},
         {"loading", "L&oading", "Show what stands in for finer tiles, and what is new", SoTerrainShape::LOADING}};
     return pictures;
 }
@@ -71,7 +73,9 @@ void setFrozen(Scene& scene, bool on) {
 
 void applyDebugOptions(Scene& scene, const Options& options) {
     const bool wanted = options.debugPicture || options.overlay || options.freezeAt;
-    if (wanted && !canDebug(scene)) std::fprintf(stderr, "SoTerrainTest: --debug-view, --overlay and --freeze-at have no effect on %s\n", scene.algorithm().c_str());
+    if (wanted && !canDebug(scene))
+        std::fprintf(stderr, "SoTerrainTest: --debug-view, --overlay and --freeze-at have no effect on %s\n",
+                     scene.algorithm().c_str());
     if (options.debugPicture) setDebugPicture(scene, options.debugPicture->value);
     if (options.overlay) setEdges(scene, true);
 }

@@ -18,10 +18,10 @@ namespace terrain {
 
 /// A corner of a triangle of its own. Positions go to GL as those of any mesh do, so that depth comes out the same.
 struct DebugVertex {
-    glm::vec3 position{0.0f};      ///< local coordinates
-    std::uint8_t colour[4] = {};   ///< red, green, blue; behind it the corner, 0 to 2
-    glm::vec3 base{0.0f};          ///< (column, row, height) of the triangle's first corner
-    glm::vec3 offset{0.0f};        ///< from there: so that what is interpolated is small
+    glm::vec3 position{0.0f};     ///< local coordinates
+    std::uint8_t colour[4] = {};  ///< red, green, blue; behind it the corner, 0 to 2
+    glm::vec3 base{0.0f};         ///< (column, row, height) of the triangle's first corner
+    glm::vec3 offset{0.0f};       ///< from there: so that what is interpolated is small
     float shade = 1.0f;
 };
 

@@ -15,9 +15,8 @@ constexpr Colour rgb(unsigned hex) {
     return {float(hex >> 16 & 255u) / 255.0f, float(hex >> 8 & 255u) / 255.0f, float(hex & 255u) / 255.0f};
 }
 
-constexpr std::array<Colour, kCoarsestLevel + 1> kLevels{rgb(0xfde725), rgb(0xaadc32), rgb(0x5ec962), rgb(0x27ad81),
-                                                         rgb(0x21918c), rgb(0x2c728e), rgb(0x3b528b), rgb(0x472d7b),
-                                                         rgb(0x440154), rgb(0x2a0134)};
+constexpr std::array<Colour, kCoarsestLevel + 1> kLevels{rgb(0xfde725), rgb(0xaadc32), rgb(0x5ec962), rgb(0x27ad81), rgb(0x21918c),
+                                                         rgb(0x2c728e), rgb(0x3b528b), rgb(0x472d7b), rgb(0x440154), rgb(0x2a0134)};
 
 /// Four for each size, by the parities of column and row.
 constexpr std::array<Colour, 16> kPatches{rgb(0x4e79a7), rgb(0xf28e2b), rgb(0x59a14f), rgb(0xb07aa1), rgb(0x76b7b2), rgb(0xe15759),

@@ -27,8 +27,8 @@ Colour levelColour(int level);
 Colour patchColour(const DrawnPatch& patch);
 inline constexpr Colour kGapColour{0.25f, 0.25f, 0.25f};
 
-/// Colour of an error that is `part` of the allowed one: dark blue at 0, over green and yellow to red at 1, in between linear; above 1,
-/// but for rounding, magenta.
+/// Colour of an error that is `part` of the allowed one: dark blue at 0, over green and yellow to red at 1, in between linear;
+/// above 1, but for rounding, magenta.
 Colour errorColour(float part);
 /// Colours at even steps of `part` from 0 to 1.
 std::span<const Colour> errorRamp();

@@ -155,7 +155,8 @@ void ClipmapMesh::eachPatch(const SampleGrid&, const PatchVisitor& visit) const 
         const glm::ivec2 corner[4] = {cell, cell + glm::ivec2(1, 0), cell + 1, cell + glm::ivec2(0, 1)};
         if (boxes_->hasHoles() && std::any_of(corner, corner + 4, [&](glm::ivec2 v) { return isHole(level, v); })) return;
         const ClipRect& wanted = finer[std::size_t(level)];
-        const Key key{level, cell.y / kChunk, cell.x / kChunk, wanted.contains(cell) && wanted.contains(cell + 1), isNew(level, cell)};
+        const Key key{level, cell.y / kChunk, cell.x / kChunk, wanted.contains(cell) && wanted.contains(cell + 1),
+                      isNew(level, cell)};
         auto& out = parts[key];
         for (const auto& [a, b, c] : {std::tuple{0, 1, 3}, {1, 2, 3}}) {
             out.push_back(vertexId(level, corner[a]));

@@ -40,7 +40,8 @@ float TriangleErrors::pixels(const std::array<DrawnVertex, 3>& triangle) const {
             const glm::dvec2 at = glm::dvec2(column, row) - glm::dvec2(a.place);
             const double v = (at.x * ac.y - at.y * ac.x) / area, w = (ab.x * at.y - ab.y * at.x) / area;
             if (v < kAtRim || w < kAtRim || v + w > 1.0 - kAtRim || grid_.isHole(column, row)) continue;
-            const glm::dvec3 drawn = glm::dvec3(a.position) + v * glm::dvec3(b.position - a.position) + w * glm::dvec3(c.position - a.position);
+            const glm::dvec3 drawn =
+                glm::dvec3(a.position) + v * glm::dvec3(b.position - a.position) + w * glm::dvec3(c.position - a.position);
             largest = std::max(largest, pixelsOf({column, row}, drawn));
         }
     return largest;

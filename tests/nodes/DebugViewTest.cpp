@@ -66,8 +66,10 @@ struct Triangle {
 class Mesh {
 public:
     Mesh(Kind kind, const Surface& surface, SoCamera* camera, float pixelError = 2.0f) : surface_(surface), view_(viewOf(camera)) {
-        const terrain::SampleGrid grid = terrain::SampleGrid::overPoints(surface.points[0].getValue(), surface.columns, surface.rows).value();
-        const terrain::TerrainModel model{std::make_shared<terrain::BoxPyramid>(grid), std::make_shared<terrain::ErrorHierarchy>(grid)};
+        const terrain::SampleGrid grid =
+            terrain::SampleGrid::overPoints(surface.points[0].getValue(), surface.columns, surface.rows).value();
+        const terrain::TerrainModel model{std::make_shared<terrain::BoxPyramid>(grid),
+                                          std::make_shared<terrain::ErrorHierarchy>(grid)};
         const auto mesh = algorithmOf(kind, grid, model);
         terrain::LodSettings settings;
         settings.pixelError = pixelError;
@@ -80,8 +82,8 @@ public:
     const std::vector<Triangle>& triangles() const { return triangles_; }
     const terrain::View& view() const { return view_; }
 
-    /// Calls visit(triangle, x, y, weights) for the pixels whose centres lie in a triangle that is seen there. `weights` of the corners on
-    /// the screen.
+    /// Calls visit(triangle, x, y, weights) for the pixels whose centres lie in a triangle that is seen there. `weights` of the
+    /// corners on the screen.
     template <class Visit>
     void eachPixel(const std::vector<float>& depth, const Visit& visit) const {
         for (const Triangle& triangle : triangles_) {
@@ -90,15 +92,18 @@ public:
             const glm::dvec2 ab(b.window - a.window), ac(c.window - a.window);
             const double area = ab.x * ac.y - ab.y * ac.x;
             if (std::fabs(area) < 1e-3) continue;
-            const auto low = glm::max(glm::dvec2(0.0), glm::floor(glm::min(glm::min(glm::dvec2(a.window), glm::dvec2(b.window)), glm::dvec2(c.window))));
-            const auto high = glm::min(glm::dvec2(kWidth - 1, kHeight - 1), glm::max(glm::max(glm::dvec2(a.window), glm::dvec2(b.window)), glm::dvec2(c.window)));
+            const auto low = glm::max(
+                glm::dvec2(0.0), glm::floor(glm::min(glm::min(glm::dvec2(a.window), glm::dvec2(b.window)), glm::dvec2(c.window))));
+            const auto high = glm::min(glm::dvec2(kWidth - 1, kHeight - 1),
+                                       glm::max(glm::max(glm::dvec2(a.window), glm::dvec2(b.window)), glm::dvec2(c.window)));
             for (int y = int(low.y); y <= int(high.y); ++y)
                 for (int x = int(low.x); x <= int(high.x); ++x) {
                     const glm::dvec2 at = glm::dvec2(x + 0.5, y + 0.5) - glm::dvec2(a.window);
                     const double v = (at.x * ac.y - at.y * ac.x) / area, w = (ab.x * at.y - ab.y * at.x) / area, u = 1.0 - v - w;
                     if (std::min({u, v, w}) <= 0.01) continue;
                     const double z = u * a.window.z + v * b.window.z + w * c.window.z;
-                    if (std::fabs(z - double(depth[std::size_t(y * kWidth + x)])) < 2e-6) visit(triangle, x, y, glm::dvec3(u, v, w));
+                    if (std::fabs(z - double(depth[std::size_t(y * kWidth + x)])) < 2e-6)
+                        visit(triangle, x, y, glm::dvec3(u, v, w));
                 }
         }
     }
@@ -113,8 +118,9 @@ public:
         const int column = std::clamp(int(place.x), 0, surface_.columns - 2), row = std::clamp(int(place.y), 0, surface_.rows - 2);
         const glm::dvec2 at = place - glm::dvec2(column, row);
         const auto height = [&](int i, int j) { return double(surface_.at(column + i, row + j)[2]); };
-        const double one = at.x + at.y <= 1.0 ? height(0, 0) * (1.0 - at.x - at.y) + height(1, 0) * at.x + height(0, 1) * at.y
-                                              : height(1, 1) * (at.x + at.y - 1.0) + height(0, 1) * (1.0 - at.x) + height(1, 0) * (1.0 - at.y);
+        const double one = at.x + at.y <= 1.0
+                               ? height(0, 0) * (1.0 - at.x - at.y) + height(1, 0) * at.x + height(0, 1) * at.y
+                               : height(1, 1) * (at.x + at.y - 1.0) + height(0, 1) * (1.0 - at.x) + height(1, 0) * (1.0 - at.y);
         const double other = at.x >= at.y ? height(0, 0) * (1.0 - at.x) + height(1, 0) * (at.x - at.y) + height(1, 1) * at.y
                                           : height(0, 0) * (1.0 - at.y) + height(0, 1) * (at.y - at.x) + height(1, 1) * at.x;
         const glm::dvec3 there(drawn.x, drawn.y, std::clamp(drawn.z, std::min(one, other), std::max(one, other)));
@@ -127,19 +133,25 @@ public:
     }
 
 private:
-    static std::unique_ptr<terrain::LodAlgorithm> algorithmOf(Kind kind, const terrain::SampleGrid& grid, const terrain::TerrainModel& model) {
+    static std::unique_ptr<terrain::LodAlgorithm> algorithmOf(Kind kind, const terrain::SampleGrid& grid,
+                                                              const terrain::TerrainModel& model) {
         switch (kind) {
-            case Kind::Roam: return std::make_unique<terrain::RoamMesh>(model, grid);
-            case Kind::GeoMipmap: return std::make_unique<terrain::GeoMipmapMesh>(std::make_shared<terrain::GeoMipmapErrors>(grid, 8));
-            case Kind::ChunkedLod: return std::make_unique<terrain::ChunkedLod>(model, grid, 64, nullptr);
-            case Kind::Clipmap: {
-                terrain::ClipmapShape shape;
-                shape.size = 31;
-                const auto errors = std::make_shared<const terrain::ClipmapErrors>(grid, 10);
-                return std::make_unique<terrain::ClipmapMesh>(grid.columns(), grid.rows(), shape, terrain::ClipmapSettings{}, model.boxes,
-                                                              [errors](const terrain::SampleGrid&) { return errors; }, nullptr);
-            }
-            default: return std::make_unique<terrain::BruteForceMesh>();
+        case Kind::Roam:
+            return std::make_unique<terrain::RoamMesh>(model, grid);
+        case Kind::GeoMipmap:
+            return std::make_unique<terrain::GeoMipmapMesh>(std::make_shared<terrain::GeoMipmapErrors>(grid, 8));
+        case Kind::ChunkedLod:
+            return std::make_unique<terrain::ChunkedLod>(model, grid, 64, nullptr);
+        case Kind::Clipmap: {
+            terrain::ClipmapShape shape;
+            shape.size = 31;
+            const auto errors = std::make_shared<const terrain::ClipmapErrors>(grid, 10);
+            return std::make_unique<terrain::ClipmapMesh>(
+                grid.columns(), grid.rows(), shape, terrain::ClipmapSettings{}, model.boxes,
+                [errors](const terrain::SampleGrid&) { return errors; }, nullptr);
+        }
+        default:
+            return std::make_unique<terrain::BruteForceMesh>();
         }
     }
 
@@ -166,12 +178,22 @@ private:
     int tiles_ = 0;
 };
 
-Surface hills() { return surfaceOf(fractalMap(193, 161, 50.0)); }
+Surface hills() {
+    return surfaceOf(fractalMap(193, 161, 50.0));
+}
 
-SoCamera* slanted() { return cameraAt(SbVec3f(96.0f, -30.0f, 90.0f), SbVec3f(96.0f, 80.0f, 20.0f), 2.0f, 400.0f); }
-SoCamera* near() { return cameraAt(SbVec3f(90.0f, 20.0f, 62.0f), SbVec3f(100.0f, 80.0f, 25.0f), 0.5f, 400.0f); }
-SoCamera* grazing() { return cameraAt(SbVec3f(-60.0f, 81.3f, 48.0f), SbVec3f(100.0f, 80.0f, 22.0f), 1.0f, 400.0f); }
-SoCamera* far() { return cameraAt(SbVec3f(96.0f, -900.0f, 500.0f), SbVec3f(96.0f, 80.0f, 20.0f), 100.0f, 2000.0f); }
+SoCamera* slanted() {
+    return cameraAt(SbVec3f(96.0f, -30.0f, 90.0f), SbVec3f(96.0f, 80.0f, 20.0f), 2.0f, 400.0f);
+}
+SoCamera* near() {
+    return cameraAt(SbVec3f(90.0f, 20.0f, 62.0f), SbVec3f(100.0f, 80.0f, 25.0f), 0.5f, 400.0f);
+}
+SoCamera* grazing() {
+    return cameraAt(SbVec3f(-60.0f, 81.3f, 48.0f), SbVec3f(100.0f, 80.0f, 22.0f), 1.0f, 400.0f);
+}
+SoCamera* far() {
+    return cameraAt(SbVec3f(96.0f, -900.0f, 500.0f), SbVec3f(96.0f, 80.0f, 20.0f), 100.0f, 2000.0f);
+}
 
 void unlit(SoSeparator* group) {
     auto* model = new SoLightModel;
@@ -179,7 +201,8 @@ void unlit(SoSeparator* group) {
     group->addChild(model);
 }
 
-Ref<SoSeparator> sceneFor(Kind kind, const Surface& surface, SoCamera* camera, const Dressing& dress = unlit, float pixelError = 2.0f) {
+Ref<SoSeparator> sceneFor(Kind kind, const Surface& surface, SoCamera* camera, const Dressing& dress = unlit,
+                          float pixelError = 2.0f) {
     Ref<SoSeparator> root = sceneOf(kind, surface, {.pixelError = pixelError}, dress, camera);
     if (auto* clipmap = dynamic_cast<SoGeometryClipmapTerrain*>(terrainIn(root.get()))) clipmap->clipmapSize = 31;
     return root;
@@ -251,7 +274,8 @@ TEST_P(DebugViews, ShowTheLevelOfEachTriangle) {
         int looked = 0, wrong = 0;
         mesh.eachPixel(stage.depth(), [&](const Triangle& triangle, int x, int y, const glm::dvec3&) {
             if (triangle.closesGaps) return;
-            const glm::dvec2 ab = triangle.corner[1].place - triangle.corner[0].place, ac = triangle.corner[2].place - triangle.corner[0].place;
+            const glm::dvec2 ab = triangle.corner[1].place - triangle.corner[0].place,
+                             ac = triangle.corner[2].place - triangle.corner[0].place;
             const int level = int(std::floor(std::log2(std::sqrt(std::fabs(ab.x * ac.y - ab.y * ac.x)) * 1.0001)));
             levels.insert(level);
             ++looked;
@@ -327,7 +351,8 @@ TEST_P(DebugViews, ShowABrokenPromiseOfAFrozenMeshInMagenta) {
     const std::vector<float> depth = stage.depth();
     int broken = 0;
     for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) broken += depth[std::size_t(y * kWidth + x)] < 1.0f && pixelOf(after, x, y) == terrain::kBrokenColour;
+        for (int x = 0; x < kWidth; ++x)
+            broken += depth[std::size_t(y * kWidth + x)] < 1.0f && pixelOf(after, x, y) == terrain::kBrokenColour;
     savePicture("debug_broken_" + identifierOf(GetParam()), {before, after});
     if (GetParam() == Kind::BruteForce)
         EXPECT_EQ(broken, 0);
@@ -487,7 +512,8 @@ TEST(DebugView, LoadingTellsWhereLevelsOfAClipmapFellBehind) {
     for (int frame = 0; frame < 100; ++frame) {
         const Image picture = stage.render(root.get());
         int standIns = 0;
-        for (int i = 0; i < kWidth * kHeight; ++i) standIns += distanceOf(pixelOf(picture, i % kWidth, i / kWidth), terrain::kStandInColour) < kSame;
+        for (int i = 0; i < kWidth * kHeight; ++i)
+            standIns += distanceOf(pixelOf(picture, i % kWidth, i / kWidth), terrain::kStandInColour) < kSame;
         if (standIns > most) pictures = {picture};
         most = std::max(most, standIns);
         if (!node->getStatistics().converged) continue;
@@ -505,7 +531,8 @@ TEST(DebugView, ErrorsOfCurvedGridsAreThoseOfTheWorstSample) {
     const terrain::HeightMap map = fractalMap(129, 129, 30.0);
     const Surface flat = surfaceOf(map);
     const Surface curved = surfaceOf(map, [](int column, int row, float height) {
-        return SbVec3f(float(column), float(row), height - 1e-3f * float((column - 64) * (column - 64)) + 0.02f * std::sin(float(row)));
+        return SbVec3f(float(column), float(row),
+                       height - 1e-3f * float((column - 64) * (column - 64)) + 0.02f * std::sin(float(row)));
     });
     // One sample aside makes a grid that is no regular one of almost the same surface.
     Surface nearlyFlat = flat;
@@ -522,7 +549,9 @@ TEST(DebugView, ErrorsOfCurvedGridsAreThoseOfTheWorstSample) {
             pictures.push_back(stage.render(root.get()));
             const std::vector<float> depth = stage.depth();
             for (int pixel = 0; pixel < kWidth * kHeight; ++pixel)
-                if (depth[std::size_t(pixel)] < 1.0f) largest[std::size_t(i)] = std::max(largest[std::size_t(i)], partOf(pixelOf(pictures.back(), pixel % kWidth, pixel / kWidth)));
+                if (depth[std::size_t(pixel)] < 1.0f)
+                    largest[std::size_t(i)] =
+                        std::max(largest[std::size_t(i)], partOf(pixelOf(pictures.back(), pixel % kWidth, pixel / kWidth)));
             ++i;
         }
         std::printf("%s: flat %.3f, by triangle %.3f, curved %.3f\n", nameOf(kind), largest[0], largest[1], largest[2]);
@@ -534,4 +563,5 @@ TEST(DebugView, ErrorsOfCurvedGridsAreThoseOfTheWorstSample) {
     savePicture("debug_errors_curved", pictures);
 }
 
-INSTANTIATE_TEST_SUITE_P(Nodes, DebugViews, testing::ValuesIn(kOurKinds), [](const auto& info) { return identifierOf(info.param); });
+INSTANTIATE_TEST_SUITE_P(Nodes, DebugViews, testing::ValuesIn(kOurKinds),
+                         [](const auto& info) { return identifierOf(info.param); });

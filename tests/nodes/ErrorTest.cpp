@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include <glm/geometric.hpp>
+
+#include <Inventor/nodes/SoLightModel.h>
 #include <Inventor/nodes/SoOrthographicCamera.h>
 #include <Inventor/nodes/SoScale.h>
 
@@ -14,6 +19,8 @@
 #include <SoTerrain/SoGeometryClipmapTerrain.h>
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoROAMTerrain.h>
+
+#include "lod/DebugColours.h"
 
 using namespace test;
 
@@ -240,6 +247,45 @@ TEST(PixelError, HoldsAfterEdits) {
             std::printf("%s, edit %d: %.2f of %.2f pixels\n", nameOf(kind), i, measured.largest, told);
         }
     }
+}
+
+/// The heat map of debugView ERRORS against the depth method: nothing is shown that is more than what is measured, and what is in sight is shown.
+TEST(PixelError, IsWhatTheHeatMapShows) {
+    const Surface surface = surfaceOf(fractalMap(kSide, kSide, 60.0));
+    Stage stage(kSide, kSide);
+    for (const Kind kind : kLodKinds)
+        for (const float pixels : {1.0f, 4.0f}) {
+            SCOPED_TRACE(std::string(nameOf(kind)) + ", pixelError " + std::to_string(pixels));
+            // From so high up that no hill hides another.
+            const auto root = sceneOf(kind, surface, {.pixelError = pixels}, [](SoSeparator* group) {
+                auto* model = new SoLightModel;
+                model->model = SoLightModel::BASE_COLOR;
+                group->addChild(model);
+            }, cameraAt(SbVec3f(128.0f, -10.0f, 190.0f), SbVec3f(128.0f, 100.0f, 20.0f), 1.0f, 600.0f));
+            SoTerrainShape* node = terrainIn(root.get());
+            stage.render(root.get());
+            const Measured measured = measure(stage, root.get(), surface);
+            node->debugView = SoTerrainShape::ERRORS;
+            const terrain::Image picture = stage.render(root.get());
+            const std::vector<float> depth = stage.depth();
+            const std::span<const terrain::Colour> ramp = terrain::errorRamp();
+            double shown = 0.0;
+            for (int y = 0; y < kSide; ++y)
+                for (int x = 0; x < kSide; ++x) {
+                    if (depth[std::size_t((kSide - 1 - y) * kSide + x)] == 1.0f) continue;
+                    const std::uint8_t* p = &picture.pixels[std::size_t(y * kSide + x) * 3];
+                    const terrain::Colour colour = terrain::Colour(p[0], p[1], p[2]) / 255.0f;
+                    ASSERT_GT(glm::length(colour - terrain::kBrokenColour), 0.1f) << "magenta at " << x << ' ' << y;
+                    for (std::size_t i = 0; i + 1 < ramp.size(); ++i) {
+                        const terrain::Colour step = ramp[i + 1] - ramp[i];
+                        const float at = std::clamp(glm::dot(colour - ramp[i], step) / glm::dot(step, step), 0.0f, 1.0f);
+                        if (glm::length(colour - ramp[i] - step * at) < 0.01f) shown = std::max(shown, double(pixels) * (double(i) + double(at)) / double(ramp.size() - 1));
+                    }
+                }
+            std::printf("%s: %.3f of %.0f pixels shown, %.3f measured\n", nameOf(kind), shown, pixels, measured.largest);
+            EXPECT_LE(shown, measured.largest + 0.02 * pixels);
+            EXPECT_GE(shown, 0.9 * measured.largest - 0.02 * pixels);
+        }
 }
 
 TEST(PixelError, OfBruteForceIsNone) {
