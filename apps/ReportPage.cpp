@@ -138,7 +138,8 @@ void Page::writeFindings() {
     for (const Finding& finding : findings(plan_))
         out_ << "<div class=\"finding\" style=\"--c:" << finding.subject->color << "\"><h3>" << finding.head
              << "</h3><p class=\"value\">" << finding.value << (finding.unit.empty() ? "" : " <small>" + finding.unit + "</small>")
-             << "</p><p class=\"who\">" << escaped(finding.subject->label) << "</p><p>" << escaped(finding.text) << "</p></div>\n";
+             << "</p><p class=\"who\">" << breakable(finding.subject->label) << "</p><p>" << escaped(finding.text)
+             << "</p></div>\n";
     out_ << "</section>\n";
 }
 
@@ -242,6 +243,9 @@ void Page::writePicture(const Subject& subject, const char* name, const char* wh
 }
 
 void Page::writePictures() {
+    // A build without OpenImageIO takes none.
+    if (std::all_of(plan_.subjects.begin(), plan_.subjects.end(), [this](const Subject& s) { return picture(s, "lines").empty(); }))
+        return;
     out_ << "<section><h2>Pictures</h2><p class=\"caption\">The frame a third of the way through the flight, at half its size: "
             "textured and "
             "lit, and the triangles that were drawn for it.</p><div class=\"pictures\">\n";

@@ -20,7 +20,7 @@ class Page(HTMLParser):
 
     def __init__(self):
         super().__init__()
-        self.rows, self.cell, self.references, self.plots, self.ids, self.unlabelled = [], None, [], 0, [], 0
+        self.rows, self.cell, self.references, self.plots, self.pictures, self.ids, self.unlabelled = [], None, [], 0, 0, [], 0
         self.in_table = self.in_body = False
         self.open = []
 
@@ -35,6 +35,7 @@ class Page(HTMLParser):
             self.plots += 1
             self.unlabelled += not attributes.get("aria-label")
         if tag == "img":
+            self.pictures += 1
             self.unlabelled += not attributes.get("alt")
         if tag == "table":
             self.in_table = attributes.get("id") == "nodes"
@@ -80,6 +81,7 @@ check(len(page.ids) == len(set(page.ids)), "an id is there twice")
 check(not re.search(r"\b(nan|inf|null)\b", re.sub(r"base64,[^\"]*", "", text), re.I), "a figure is no number")
 check(page.unlabelled == 0, "a picture or a plot has no text for who does not see it")
 check(page.plots == 8, f"{page.plots} plots instead of 8")
+check(page.pictures in (0, 1 + 2 * 8), f"{page.pictures} pictures instead of 17, or none without OpenImageIO")
 check(not page.open, f"elements that do not end: {page.open}")
 
 # Page, CSV and JSON say the same. The first measurements are the rows of the table.

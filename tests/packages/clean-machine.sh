@@ -97,13 +97,15 @@ draws_terrain() {
 in_window() { echo timeout 120 xvfb-run -a; }
 
 client_tools() {
-    check "tools: soterrain-tools installs" new_machine soterrain-tools soterrain-data libsoterrain0 libsimage-dev
+    check "tools: soterrain-tools installs" new_machine soterrain-tools soterrain-data libsoterrain0 libsimage-dev gnuplot-nox
     check "tools: nothing but packages" only_packages
     check "tools: SoTerrainTest draws the installed map" \
         draws_terrain tools.ppm SoTerrainTest -h terrain.png -t terrain_texture.jpg -c --offscreen=640x480 --output /tmp/tools.ppm
     check "tools: SoTerrainTest draws the installed scene" \
         draws_terrain scene.ppm SoTerrainTest --scene terrain.iv --offscreen=640x480 --output /tmp/scene.ppm
     check "tools: soterrain-bench compares nodes" inside soterrain-bench --map terrain.png --frames 2 --nodes SoROAMTerrain,SoChunkedLoDTerrain
+    check "tools: soterrain-report writes a page" inside sh -c \
+        'cd /tmp && soterrain-report terrain.png --quick --nodes SoROAMTerrain,SoQuadMesh -o report && grep -q "<svg" report/report.html'
     check "tools: soterrain-generate makes a map that SoTerrainTest draws" inside sh -c \
         'cd /tmp && soterrain-generate --size 129 --droplets 1000 --output made.png --texture made.jpg && SoTerrainTest -h made.png -t made.jpg --offscreen'
 }
