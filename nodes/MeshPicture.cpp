@@ -25,11 +25,11 @@ class PlainState {
 public:
     PlainState()
     {
-        glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+        if (hasPrograms) glGetIntegerv(GL_CURRENT_PROGRAM, &program);
         glPushAttrib(GL_ALL_ATTRIB_BITS);
         glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
         glBindBuffer(GL_ARRAY_BUFFER, 0);
-        glUseProgram(0);
+        if (hasPrograms) glUseProgram(0);
         for (const GLenum feature : {GL_LIGHTING, GL_FOG, GL_BLEND, GL_ALPHA_TEST, GL_POLYGON_STIPPLE, GL_COLOR_SUM, GL_LINE_STIPPLE}) glDisable(feature);
         for (const GLenum feature : {GL_VERTEX_PROGRAM_ARB, GL_FRAGMENT_PROGRAM_ARB})
             if (glIsEnabled(feature)) glDisable(feature);
@@ -45,12 +45,13 @@ public:
     {
         glPopClientAttrib();
         glPopAttrib();
-        glUseProgram(GLuint(program));
+        if (hasPrograms) glUseProgram(GLuint(program));
     }
     PlainState(const PlainState &) = delete;
     PlainState & operator=(const PlainState &) = delete;
 
 private:
+    const bool hasPrograms = epoxy_gl_version() >= 20;
     GLint program = 0;
 };
 
@@ -256,11 +257,9 @@ MeshPicture::Programs MeshPicture::findPrograms(const TerrainFrame & frame, cons
     Programs programs;
     const bool byFragment = wanted.picture == SoTerrainShape::ERRORS && !wanted.hasDetail;
     if (epoxy_gl_version() < 30) {
-        if (byFragment) problem = "errors are shown triangle by triangle";
-        if (wanted.edges) problem += std::string(problem.empty() ? "" : ", ") + "edges are GL's own lines";
-        if (!problem.empty())
+        if (byFragment || wanted.edges)
             problem = "debug views: expected OpenGL 3.0 or newer, found " + std::to_string(epoxy_gl_version() / 10) + "." + std::to_string(epoxy_gl_version() % 10) +
-                      "; " + problem;
+                      "; errors are shown triangle by triangle, edges are GL's own lines";
         return programs;
     }
     const auto find = [&](const char * name, terrain::Result<terrain::GlProgram> (*build)(), const char * instead) -> terrain::GlProgram * {

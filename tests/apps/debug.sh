@@ -56,4 +56,16 @@ xdotool key z
 sleep 1
 title | grep -q frozen && fail "Z does not thaw"
 close_window
+
+# Without GLSL: one word about it, and pictures all the same.
+MESA_GL_VERSION_OVERRIDE=2.1 open_window $map --no-settings --overlay
+shot terrain
+xdotool key F8
+shot errors
+moved terrain errors || fail "no errors without GLSL"
+xdotool key w
+sleep 0.5
+told=$(grep -c "expected OpenGL 3.0 or newer, found 2.1; errors are shown triangle by triangle, edges are GL's own lines" "$SCRATCH/err")
+[ "$told" = 2 ] || { fail "$told messages without GLSL, not one for each picture"; cat "$SCRATCH/err"; }
+close_window
 finish

@@ -221,6 +221,42 @@ TEST_P(Contexts, KeepNothingOfNodesThatDieWhicheverIsCurrent) {
     EXPECT_EQ(shared.left(), "none");
 }
 
+TEST_P(Contexts, KeepNothingOfPicturesOfTheMesh) {
+    Canvas first(ledger_), second(ledger_), shared(ledger_, second.id(), &second);
+    auto root = scene();
+    SoTerrainShape* node = terrainIn(root.get());
+    // Each as a viewer of its own, which stays.
+    std::vector<Ref<SoSeparator>> viewers;
+    std::vector<Canvas*> canvases{&first, &second, &shared};
+    for (int i = 0; i < 3; ++i) viewers.push_back(viewerOf(root.get()));
+    std::vector<Image> plain, again;
+    for (int i = 0; i < 3; ++i) plain.push_back(canvases[std::size_t(i)]->render(viewers[std::size_t(i)].get()));
+    const std::size_t textures = ledger_.all()[GlLedger::Texture];
+    node->debugView = SoTerrainShape::ERRORS;
+    node->wireframeOverlay = TRUE;
+    for (int frame = 0; frame < 2; ++frame) {
+        std::vector<Image> pictures;
+        for (int i = 0; i < 3; ++i) pictures.push_back(canvases[std::size_t(i)]->render(viewers[std::size_t(i)].get()));
+        EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+        EXPECT_EQ(pictures[0].pixels, pictures[2].pixels);
+        EXPECT_EQ(ledger_.all()[GlLedger::Texture], textures + 3) << "the heights, in each";
+    }
+    node->debugView = SoTerrainShape::NONE;
+    node->wireframeOverlay = FALSE;
+    for (int i = 0; i < 3; ++i) again.push_back(canvases[std::size_t(i)]->render(viewers[std::size_t(i)].get()));
+    EXPECT_EQ(ledger_.all()[GlLedger::Texture], textures);
+    for (std::size_t i = 0; i < 3; ++i) expectSame(plain[i], again[i], "as before");
+    node->debugView = SoTerrainShape::ERRORS;
+    for (int i = 0; i < 3; ++i) canvases[std::size_t(i)]->render(viewers[std::size_t(i)].get());
+    root = {};
+    viewers.clear();
+    for (Canvas* canvas : canvases) EXPECT_EQ(canvas->leftButPrograms(), "none");
+    first.tell();
+    EXPECT_EQ(first.left(), "none");
+    second.tell();
+    EXPECT_EQ(shared.left(), "none");
+}
+
 // Mesa's software drivers crash where one of several contexts deletes what another one has drawn with.
 TEST_P(Contexts, ThatShareKeepProgramsWhenTerrainsGoAndMakeNoneTwice) {
     Canvas first(ledger_), second(ledger_, first.id(), &first);

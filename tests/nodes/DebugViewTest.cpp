@@ -9,6 +9,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <set>
 #include <thread>
@@ -561,6 +562,51 @@ TEST(DebugView, ErrorsOfCurvedGridsAreThoseOfTheWorstSample) {
         EXPECT_GT(largest[2], 0.4) << nameOf(kind);
     }
     savePicture("debug_errors_curved", pictures);
+}
+
+TEST_P(DebugViews, LeaveHolesOpen) {
+    auto map = fractalMap(129, 97, 30.0);
+    for (int row = 30; row < 55; ++row)
+        for (int column = 40; column < 90; ++column) map.heights[std::size_t(row * 129 + column)] = std::numeric_limits<float>::quiet_NaN();
+    const Surface surface = surfaceOf(map);
+    Stage stage(kWidth, kHeight);
+    const auto root =
+        sceneFor(GetParam(), surface, cameraAt(SbVec3f(64.0f, -20.0f, 70.0f), SbVec3f(64.0f, 45.0f, 10.0f), 1.0f, 300.0f), unlitTexture);
+    SoTerrainShape* node = terrainIn(root.get());
+    if (auto* clipmap = dynamic_cast<SoGeometryClipmapTerrain*>(node)) clipmap->implementation = SoGeometryClipmapTerrain::CPU;
+    const Image plain = stage.render(root.get());
+    const std::vector<float> depth = stage.depth();
+    std::vector<Image> pictures{plain};
+    for (const int view : {SoTerrainShape::TILES, SoTerrainShape::LEVELS, SoTerrainShape::ERRORS, SoTerrainShape::LOADING}) {
+        node->debugView = view;
+        pictures.push_back(stage.render(root.get()));
+        EXPECT_EQ(stage.depth(), depth) << "the same mesh at the same depth";
+        if (view != SoTerrainShape::ERRORS || GetParam() == Kind::Clipmap) continue;
+        for (int i = 0; i < kWidth * kHeight; ++i) {
+            if (depth[std::size_t(i)] < 1.0f) {
+                ASSERT_LE(partOf(pixelOf(pictures.back(), i % kWidth, i / kWidth)), 1.0) << i % kWidth << ' ' << i / kWidth;
+            }
+        }
+    }
+    savePicture("debug_holes_" + identifierOf(GetParam()), pictures);
+}
+
+/// Two cameras on one node: each has the errors of its own mesh, on its own screen.
+TEST_P(DebugViews, OfTwoViewsAreThoseOfEach) {
+    const Surface surface = hills();
+    Stage stage(kWidth, kHeight);
+    const auto one = sceneFor(GetParam(), surface, slanted()), other = sceneFor(GetParam(), surface, near());
+    // The second scene draws the first one's node.
+    auto* shape = static_cast<SoSeparator*>(static_cast<SoSeparator*>(other->getChild(2))->getChild(1));
+    SoTerrainShape* node = terrainIn(one.get());
+    const Ref<SoSeparator> alone = sceneFor(GetParam(), surface, near());
+    terrainIn(alone.get())->debugView = node->debugView = SoTerrainShape::ERRORS;
+    const Image expected = stage.render(alone.get());
+    shape->replaceChild(shape->getNumChildren() - 1, node);
+    const Image first = stage.render(one.get());
+    EXPECT_EQ(stage.render(other.get()).pixels, expected.pixels);
+    EXPECT_EQ(stage.render(one.get()).pixels, first.pixels);
+    EXPECT_EQ(stage.render(other.get()).pixels, expected.pixels);
 }
 
 INSTANTIATE_TEST_SUITE_P(Nodes, DebugViews, testing::ValuesIn(kOurKinds),

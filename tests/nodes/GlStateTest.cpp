@@ -99,11 +99,17 @@ TEST_P(GlState, AfterTheNodeIsWhatItWasBefore) {
         group->insertChild(group->getChild(shape), shape);
         group->insertChild(recorder(before), shape + 1);
         group->addChild(recorder(after));
+        auto* node = static_cast<SoTerrainShape*>(group->getChild(shape));
         Stage stage;
-        for (int frame = 0; frame < 2; ++frame) {
-            stage.render(root.get());
-            EXPECT_EQ(after, before) << "frame " << frame << ", colours " << coloured;
-        }
+        for (const int view : {SoTerrainShape::NONE, SoTerrainShape::LEVELS, SoTerrainShape::ERRORS})
+            for (const bool edges : {false, true})
+                for (int frame = 0; frame < 2; ++frame) {
+                    node->debugView = view;
+                    node->wireframeOverlay = edges;
+                    node->freeze = node->frozenFrustum = edges && view == SoTerrainShape::ERRORS;
+                    stage.render(root.get());
+                    EXPECT_EQ(after, before) << "frame " << frame << ", colours " << coloured << ", debugView " << view << ", edges " << edges;
+                }
     }
 }
 
