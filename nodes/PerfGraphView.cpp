@@ -104,11 +104,13 @@ void PerfGraphView::arrange(const PerfLayout & layout, const std::vector<PerfGra
         texts_.clear();
         lineWidth_ = float(layout.textScale);
     }
+    curves_.clear();
+    curveLengths_.clear();
     for (std::size_t i = 0; i < graphs_.size(); ++i) {
         Graph & graph = graphs_[i];
         if (graph.source == NONE) continue;
         const PerfGraphPicture picture(layout, int(i));
-        picture.fillCurve(graph.curve, graph.plot, styles[i].color);
+        curveLengths_.push_back(picture.addCurve(curves_, graph.plot, styles[i].color));
         if (!renew) continue;
         graph.drawnTop = graph.plot.top();
         graph.drawnBottom = graph.plot.bottom();
@@ -121,10 +123,9 @@ bool PerfGraphView::draw(terrain::OverlayResources & resources, const PerfLayout
 {
     const terrain::OverlayScope overlay(resources, int(layout.viewport.x), int(layout.viewport.y));
     if (!overlay.canDraw()) return false;
-    overlay.drawQuads(grounds_.vertices());
-    overlay.setLineWidth(lineWidth_);
-    for (const Graph & graph : graphs_) overlay.drawStrip(graph.curve);
-    overlay.drawQuads(texts_.vertices());
+    overlay.drawRectangles(grounds_.vertices());
+    overlay.drawLines(curves_, curveLengths_, lineWidth_);
+    overlay.drawText(texts_.vertices());
     return true;
 }
 

@@ -50,7 +50,6 @@ private:
         double seen = 0.0;  ///< the counter's total in the latest frame
         PerfPlot plot;
         double drawnTop = 0.0, drawnBottom = 0.0;  ///< of the scale that the quads show
-        std::vector<terrain::OverlayVertex> curve;
     };
     static Graph graphFor(const std::string & name);
     static std::string unitOf(const Graph & graph);
@@ -59,6 +58,8 @@ private:
 
     std::vector<Graph> graphs_;
     terrain::OverlayQuads grounds_, texts_;
+    std::vector<terrain::OverlayVertex> curves_;
+    std::vector<GLsizei> curveLengths_;
     float lineWidth_ = 1.0f;
     bool isResting_ = true;
     std::uint64_t frames_ = 0;

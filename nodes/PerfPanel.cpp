@@ -77,20 +77,21 @@ void PerfGraphPicture::addText(OverlayQuads & to, const PerfPlot & plot, const P
         to.addText({left, low_.y + 1.0f}, cut(roundNumber(plot.bottom(), unit), right - left), kDim, textScale_);
 }
 
-void PerfGraphPicture::fillCurve(std::vector<OverlayVertex> & curve, const PerfPlot & plot, const OverlayColor & color) const
+int PerfGraphPicture::addCurve(std::vector<OverlayVertex> & curves, const PerfPlot & plot, const OverlayColor & color) const
 {
     const std::size_t verticesPerPoint = plot.isCondensed() ? 2 : 1;
-    curve.resize(plot.size() * verticesPerPoint);
-    if (curve.empty()) return;
+    const std::size_t before = curves.size(), count = plot.size() * verticesPerPoint;
+    curves.resize(before + count);
     const float step = (high_.x - low_.x - 1.0f) / float(std::max<std::size_t>(plot.capacity(), 2) - 1);
     const float factor = float(1.0 / (plot.top() - plot.bottom())), bottom = float(plot.bottom());
     const float height = curveTop_ - low_.y - 1.0f, y = low_.y + 0.5f;
     // The latest stands at the right.
     float x = low_.x + 0.5f + step * float(plot.capacity() - plot.size());
-    OverlayVertex * out = curve.data();
+    OverlayVertex * out = curves.data() + before;
     plot.visit([&](const PerfPlot::Point & point) {
-        *out++ = {x, y + std::clamp((point.low - bottom) * factor, 0.0f, 1.0f) * height, 1, 1, color};
-        if (verticesPerPoint == 2) *out++ = {x, y + std::clamp((point.high - bottom) * factor, 0.0f, 1.0f) * height, 1, 1, color};
+        *out++ = {x, y + std::clamp((point.low - bottom) * factor, 0.0f, 1.0f) * height, 0, 0, color};
+        if (verticesPerPoint == 2) *out++ = {x, y + std::clamp((point.high - bottom) * factor, 0.0f, 1.0f) * height, 0, 0, color};
         x += step;
     });
+    return int(count);
 }

@@ -36,8 +36,8 @@ public:
     void addGround(terrain::OverlayQuads & to, const PerfPlot & plot, const PerfGraphStyle & style) const;
     void addText(terrain::OverlayQuads & to, const PerfPlot & plot, const PerfGraphStyle & style, const std::string & name,
                  const std::string & unit) const;
-    /// The vertices of its curve.
-    void fillCurve(std::vector<terrain::OverlayVertex> & curve, const PerfPlot & plot, const terrain::OverlayColor & color) const;
+    /// Appends the vertices of its curve, and returns how many these are.
+    int addCurve(std::vector<terrain::OverlayVertex> & curves, const PerfPlot & plot, const terrain::OverlayColor & color) const;
 
 private:
     float heightOf(double value, const PerfPlot & plot) const;

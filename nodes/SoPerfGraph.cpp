@@ -53,7 +53,7 @@
       maximum 0
       color [ 0.4 0.9 0.4, 1 0.8 0.3, 1 0.5 0.4, 0.4 0.8 1, 1 1 0.5, 0.8 0.6 1 ]
       position 8 8
-      size 150 60
+      size 120 44
       scale 1
       columns 0
       history 120
@@ -87,7 +87,7 @@
 */
 /*!
   \var SoSFVec2f SoPerfGraph::size
-  Width and height of a graph in pixels. In a viewport that has less, graphs have less. Text that does not fit is left out. Default 150 60.
+  Width and height of a graph in pixels. In a viewport that has less, graphs have less. Text that does not fit is left out. Default 120 44.
 */
 /*!
   \var SoSFFloat SoPerfGraph::scale
@@ -216,7 +216,7 @@ PerfLayout SoPerfGraph::Private::layoutFor(const SbVec2s & viewport) const
     const SbVec2f place = master->position.getValue(), size = master->size.getValue();
     PerfLayout layout;
     layout.position = {within(place[0], -kFar, kFar, 8.0f) * scale, within(place[1], -kFar, kFar, 8.0f) * scale};
-    layout.size = {within(size[0], 1.0f, kLargest, 150.0f) * scale, within(size[1], 1.0f, kLargest, 60.0f) * scale};
+    layout.size = {within(size[0], 1.0f, kLargest, 120.0f) * scale, within(size[1], 1.0f, kLargest, 44.0f) * scale};
     layout.viewport = {std::max<int>(viewport[0], 1), std::max<int>(viewport[1], 1)};
     layout.gap = std::floor(6.0f * scale);
     layout.columns = std::max(0, master->columns.getValue());
@@ -271,7 +271,7 @@ SoPerfGraph::SoPerfGraph() : pimpl(new Private(this))
     SO_NODE_ADD_FIELD(maximum, (0.0f));
     SO_NODE_ADD_FIELD(color, (1.0f, 1.0f, 1.0f));
     SO_NODE_ADD_FIELD(position, (8.0f, 8.0f));
-    SO_NODE_ADD_FIELD(size, (150.0f, 60.0f));
+    SO_NODE_ADD_FIELD(size, (120.0f, 44.0f));
     SO_NODE_ADD_FIELD(scale, (1.0f));
     SO_NODE_ADD_FIELD(columns, (0));
     SO_NODE_ADD_FIELD(history, (120));

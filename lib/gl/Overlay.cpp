@@ -11,8 +11,7 @@ namespace {
 // taken.
 constexpr int kGlyphsInRow = 16, kTextureWidth = 128, kTextureHeight = 256;
 static_assert(kGlyphsInRow * kGlyphWidth <= kTextureWidth);
-// The first row of cells is white.
-static_assert((1 + (kGlyphCount + kGlyphsInRow - 1) / kGlyphsInRow) * kGlyphHeight <= kTextureHeight);
+static_assert((kGlyphCount + kGlyphsInRow - 1) / kGlyphsInRow * kGlyphHeight <= kTextureHeight);
 
 constexpr GLenum kMatrices[3] = {GL_MODELVIEW, GL_PROJECTION, GL_TEXTURE};
 constexpr GLenum kMatrixNames[3] = {GL_MODELVIEW_MATRIX, GL_PROJECTION_MATRIX, GL_TEXTURE_MATRIX};
@@ -25,7 +24,7 @@ GLint integer(GLenum name) {
 
 /// The lower left texel of a glyph.
 glm::ivec2 placeOf(int glyph) {
-    return {glyph % kGlyphsInRow * kGlyphWidth, (1 + glyph / kGlyphsInRow) * kGlyphHeight};
+    return {glyph % kGlyphsInRow * kGlyphWidth, glyph / kGlyphsInRow * kGlyphHeight};
 }
 
 bool hasFixedFunctions(int version) {
@@ -41,7 +40,6 @@ bool hasRoomForState() {
 
 std::vector<std::uint8_t> fontTexels() {
     std::vector<std::uint8_t> texels(std::size_t(kTextureWidth) * kTextureHeight, 0);
-    std::fill_n(texels.begin(), std::size_t(kTextureWidth) * kGlyphHeight, std::uint8_t(255));
     for (int glyph = 0; glyph < kGlyphCount; ++glyph) {
         const glm::ivec2 place = placeOf(glyph);
         for (int y = 0; y < kGlyphHeight; ++y)
@@ -55,11 +53,10 @@ std::vector<std::uint8_t> fontTexels() {
 }  // namespace
 
 void OverlayQuads::addRectangle(glm::vec2 low, glm::vec2 high, const OverlayColor& color) {
-    constexpr std::int16_t kWhite = 1;
-    vertices_.push_back({low.x, low.y, kWhite, kWhite, color});
-    vertices_.push_back({high.x, low.y, kWhite, kWhite, color});
-    vertices_.push_back({high.x, high.y, kWhite, kWhite, color});
-    vertices_.push_back({low.x, high.y, kWhite, kWhite, color});
+    vertices_.push_back({low.x, low.y, 0, 0, color});
+    vertices_.push_back({high.x, low.y, 0, 0, color});
+    vertices_.push_back({high.x, high.y, 0, 0, color});
+    vertices_.push_back({low.x, high.y, 0, 0, color});
 }
 
 void OverlayQuads::addText(glm::vec2 place, std::basic_string_view<std::uint8_t> glyphs, const OverlayColor& color, int scale) {
@@ -116,7 +113,7 @@ OverlayScope::OverlayScope(OverlayResources& resources, int width, int height) :
     resources_.find();
     canDraw_ = resources_.abilities_.fixedFunctions && hasRoomForState();
     if (!canDraw_) return;
-    glPushAttrib(GL_ENABLE_BIT | GL_CURRENT_BIT | GL_POLYGON_BIT | GL_LINE_BIT | GL_COLOR_BUFFER_BIT);
+    glPushAttrib(GL_ENABLE_BIT | GL_CURRENT_BIT | GL_POLYGON_BIT | GL_LINE_BIT);
     if (resources_.abilities_.version >= 30) {
         // What is pushed are the arrays of the one that is bound.
         vertexArray_ = integer(GL_VERTEX_ARRAY_BINDING);
@@ -124,6 +121,7 @@ OverlayScope::OverlayScope(OverlayResources& resources, int width, int height) :
     }
     glPushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT | GL_CLIENT_PIXEL_STORE_BIT);
     matrixMode_ = integer(GL_MATRIX_MODE);
+    saveBlending();
     switchOff();
     switchOffArrays();
     takeProgramAndTexture();
@@ -149,9 +147,32 @@ OverlayScope::~OverlayScope() {
     if (version >= 33) glBindSampler(0, GLuint(sampler_));
     if (version >= 13) glActiveTexture(GLenum(activeTexture_));
     if (version >= 20) glUseProgram(GLuint(program_));
+    if (version >= 14) {
+        glBlendFuncSeparate(GLenum(blending_[0]), GLenum(blending_[1]), GLenum(blending_[2]), GLenum(blending_[3]));
+        if (version >= 20)
+            glBlendEquationSeparate(GLenum(blending_[4]), GLenum(blending_[5]));
+        else
+            glBlendEquation(GLenum(blending_[4]));
+    } else {
+        glBlendFunc(GLenum(blending_[0]), GLenum(blending_[1]));
+    }
     glPopClientAttrib();
     if (version >= 30) glBindVertexArray(GLuint(vertexArray_));
     glPopAttrib();
+}
+
+/// Not with GL_COLOR_BUFFER_BIT: giving back draw buffers makes drivers look at the whole frame buffer.
+void OverlayScope::saveBlending() {
+    const int version = resources_.abilities_.version;
+    constexpr GLenum kNames[] = {GL_BLEND_SRC_RGB,   GL_BLEND_DST_RGB,      GL_BLEND_SRC_ALPHA,
+                                 GL_BLEND_DST_ALPHA, GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA};
+    const int count = version >= 20 ? 6 : 5;
+    if (version >= 14) {
+        for (int i = 0; i < count; ++i) blending_[i] = integer(kNames[i]);
+    } else {
+        blending_[0] = integer(GL_BLEND_SRC);
+        blending_[1] = integer(GL_BLEND_DST);
+    }
 }
 
 /// The scissor and the colour mask stay: they choose where to draw, as for a picture of one eye.
@@ -167,8 +188,6 @@ void OverlayScope::switchOff() const {
     if (abilities.assemblyPrograms)
         for (const GLenum kind : {GL_VERTEX_PROGRAM_ARB, GL_FRAGMENT_PROGRAM_ARB}) glDisable(kind);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glLineWidth(1.0f);
-    glEnable(GL_BLEND);
     if (abilities.version >= 14) {
         // What the picture covers it goes on covering, where it is kept with its opacity.
         glBlendEquation(GL_FUNC_ADD);
@@ -215,20 +234,49 @@ void OverlayScope::takeProgramAndTexture() {
     }
     if (resources_.font_ == 0) resources_.makeFont();
     glBindTexture(GL_TEXTURE_2D, resources_.font_);
-    glEnable(GL_TEXTURE_2D);
     glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
 }
 
-void OverlayScope::draw(GLenum kind, std::span<const OverlayVertex> vertices) const {
-    if (!canDraw_ || vertices.empty()) return;
+/// What is no text is drawn without the texture: blending large rectangles takes most of the time.
+void OverlayScope::setArrays(std::span<const OverlayVertex> vertices, bool isText) {
     const OverlayVertex* first = vertices.data();
     glEnableClientState(GL_VERTEX_ARRAY);
-    glEnableClientState(GL_TEXTURE_COORD_ARRAY);
     glEnableClientState(GL_COLOR_ARRAY);
     glVertexPointer(2, GL_FLOAT, sizeof(OverlayVertex), &first->x);
-    glTexCoordPointer(2, GL_SHORT, sizeof(OverlayVertex), &first->s);
     glColorPointer(4, GL_UNSIGNED_BYTE, sizeof(OverlayVertex), first->color.data());
-    glDrawArrays(kind, 0, GLsizei(vertices.size()));
+    if (isText) {
+        glEnable(GL_TEXTURE_2D);
+        glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+        glTexCoordPointer(2, GL_SHORT, sizeof(OverlayVertex), &first->s);
+    } else {
+        glDisable(GL_TEXTURE_2D);
+        glDisableClientState(GL_TEXTURE_COORD_ARRAY);
+    }
+}
+
+void OverlayScope::drawQuads(std::span<const OverlayVertex> vertices, bool isText) const {
+    if (!canDraw_ || vertices.empty()) return;
+    setArrays(vertices, isText);
+    glEnable(GL_BLEND);
+    glDrawArrays(GL_QUADS, 0, GLsizei(vertices.size()));
+}
+
+void OverlayScope::drawLines(std::span<const OverlayVertex> vertices, std::span<const GLsizei> lengths, float width) const {
+    if (!canDraw_ || vertices.empty()) return;
+    setArrays(vertices, false);
+    glDisable(GL_BLEND);
+    glLineWidth(width);
+    std::vector<GLint> firsts;
+    GLint first = 0;
+    for (const GLsizei length : lengths) {
+        firsts.push_back(first);
+        first += length;
+    }
+    // A call takes longer than the lines do.
+    if (resources_.abilities_.version >= 14)
+        glMultiDrawArrays(GL_LINE_STRIP, firsts.data(), lengths.data(), GLsizei(lengths.size()));
+    else
+        for (std::size_t i = 0; i < lengths.size(); ++i) glDrawArrays(GL_LINE_STRIP, firsts[i], lengths[i]);
 }
 
 }  // namespace terrain

@@ -18,14 +18,14 @@ namespace terrain {
 /// Red, green, blue and opacity, 0 to 255.
 using OverlayColor = std::array<std::uint8_t, 4>;
 
-/// Places are in pixels from the lower left corner of the viewport; s and t are texels of the font.
+/// Places are in pixels from the lower left corner of the viewport; s and t are texels of the font, for text.
 struct OverlayVertex {
     float x, y;
     std::int16_t s, t;
     OverlayColor color;
 };
 
-/// Rectangles and text, four vertices each and each character, in the order in which they are to be drawn.
+/// Rectangles and characters, four vertices each, in the order in which they are to be drawn.
 class OverlayQuads {
 public:
     void addRectangle(glm::vec2 low, glm::vec2 high, const OverlayColor& color);
@@ -76,20 +76,24 @@ public:
 
     /// False where the context has no fixed functions (a core profile, GLES) or no room to keep its state; nothing is drawn then.
     bool canDraw() const { return canDraw_; }
-    void drawQuads(std::span<const OverlayVertex> vertices) const { draw(GL_QUADS, vertices); }
-    /// A line along all vertices, one pixel wide unless setLineWidth() says another width.
-    void drawStrip(std::span<const OverlayVertex> vertices) const { draw(GL_LINE_STRIP, vertices); }
-    void setLineWidth(float pixels) const { glLineWidth(pixels); }
+    void drawRectangles(std::span<const OverlayVertex> vertices) const { drawQuads(vertices, false); }
+    void drawText(std::span<const OverlayVertex> vertices) const { drawQuads(vertices, true); }
+    /// Lines, each along as many vertices as `lengths` has for it, one line's behind the other's, `width` pixels wide. They are not
+    /// blended.
+    void drawLines(std::span<const OverlayVertex> vertices, std::span<const GLsizei> lengths, float width) const;
 
 private:
+    void saveBlending();
     void switchOff() const;
     void switchOffArrays() const;
     void takeProgramAndTexture();
-    void draw(GLenum kind, std::span<const OverlayVertex> vertices) const;
+    void drawQuads(std::span<const OverlayVertex> vertices, bool isText) const;
+    static void setArrays(std::span<const OverlayVertex> vertices, bool isText);
 
     OverlayResources& resources_;
     bool canDraw_ = false;
     GLint vertexArray_ = 0, matrixMode_ = 0, program_ = 0, activeTexture_ = 0, texture_ = 0, sampler_ = 0, environment_ = 0;
+    GLint blending_[6] = {};
     float matrices_[3][16];
 };
 
