@@ -2,21 +2,17 @@
 
 #include "lod/BruteForceMesh.h"
 
-SbVec3f faceNormal(const terrain::SampleGrid & grid, const SbVec3f (&corner)[3])
+SbVec3f faceNormal(const terrain::SampleGrid & grid, const glm::dvec3 (&corner)[3])
 {
-    SbVec3f normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    normal.normalize();
-    if (grid.isRegular() && normal[grid.heightAxis()] < 0.0f) normal.negate();
-    return normal;
+    return normalOfDirections(grid, glm::vec3(corner[1] - corner[0]), glm::vec3(corner[2] - corner[0]));
 }
 
 SbVec3f faceNormal(const terrain::SampleGrid & grid, int column, int row, int triangle)
 {
-    SbVec3f corner[3];
+    glm::dvec3 corner[3];
     for (int i = 0; i < 3; ++i) {
         const auto & offset = terrain::kCellTriangles[triangle][i];
-        const glm::vec3 p = grid.position(column + offset[0], row + offset[1]);
-        corner[i].setValue(p.x, p.y, p.z);
+        corner[i] = grid.framePosition(column + offset[0], row + offset[1]);
     }
     return faceNormal(grid, corner);
 }

@@ -43,8 +43,7 @@ SbVec3f toCoin(const glm::dvec3 & v)
 SbVec3f finestNormal(const terrain::SampleGrid & grid, const terrain::SynthesisedDetail & detail, const glm::dvec2 & place)
 {
     const auto triangle = terrain::finestTriangle(grid, detail, place);
-    SbVec3f corner[3];
-    for (std::size_t i = 0; i < 3; ++i) corner[i] = toCoin(glm::dvec3(grid.localFromFrame() * glm::dvec4(triangle[i], 1.0)));
+    const glm::dvec3 corner[3] = {triangle[0], triangle[1], triangle[2]};
     return faceNormal(grid, corner);
 }
 

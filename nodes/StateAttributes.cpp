@@ -16,6 +16,7 @@
 #include <Inventor/misc/SoState.h>
 
 #include "ElementAccess.h"
+#include "FaceNormal.h"
 #include "TerrainTextureUse.h"
 
 StateAttributes::StateAttributes(SoAction * action, const terrain::SampleGrid & grid, bool forGL) : grid_(grid)
@@ -123,18 +124,13 @@ int StateAttributes::boundIndex(Binding binding, int column, int row, int count)
 
 SbVec3f StateAttributes::generatedNormal(int column, int row) const
 {
+    const glm::vec3 middle = grid_.framePosition(column, row);
     // The last valid neighbours on both sides; a missing one is replaced by the sample itself.
     const auto neighbour = [&](int dc, int dr) {
         const int c = std::clamp(column + dc, 0, grid_.columns() - 1), r = std::clamp(row + dr, 0, grid_.rows() - 1);
-        return grid_.isHole(c, r) ? grid_.position(column, row) : grid_.position(c, r);
+        return grid_.isHole(c, r) ? middle : grid_.framePosition(c, r);
     };
-    const glm::vec3 alongColumns = neighbour(1, 0) - neighbour(-1, 0), alongRows = neighbour(0, 1) - neighbour(0, -1);
-    SbVec3f normal(alongColumns.y * alongRows.z - alongColumns.z * alongRows.y, alongColumns.z * alongRows.x - alongColumns.x * alongRows.z,
-                   alongColumns.x * alongRows.y - alongColumns.y * alongRows.x);
-    if (normal.normalize() == 0.0f) normal.setValue(0.0f, 0.0f, 1.0f);
-    // Ground is lit from above whichever way columns and rows run.
-    if (grid_.isRegular() && normal[grid_.heightAxis()] < 0.0f) normal.negate();
-    return normal;
+    return normalOfDirections(grid_, neighbour(1, 0) - neighbour(-1, 0), neighbour(0, 1) - neighbour(0, -1));
 }
 
 SbVec3f StateAttributes::normal(int column, int row) const
