@@ -92,7 +92,8 @@ FlightArea flightAreaOf(const TerrainGrid& grid) {
     area.width = float(grid.columns * grid.spacing.x);
     area.depth = float(grid.rows * grid.spacing.y);
     const bool standard = area.width == 1.0f && area.depth == 1.0f && grid.minimum >= 0.0 && grid.maximum <= 1.001 * standardHeight;
-    if (!standard) area.altitude = float(grid.maximum + (area.altitude - standardHeight) * std::max(area.width, area.depth));
+    const double size = std::max((grid.columns - 1) * grid.spacing.x, (grid.rows - 1) * grid.spacing.y);
+    if (!standard) area.altitude = float(grid.maximum + (area.altitude - standardHeight) * size);
     return area;
 }
 

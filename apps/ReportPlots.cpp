@@ -184,7 +184,8 @@ std::optional<Point> megabytes(const Use& use, const Measurement& m) {
 
 std::optional<Point> trade(const Use& use, const Measurement& m) {
     const double error = m.result["error_px"]["max"].get<double>();
-    return error > 0.0 ? std::optional(Point{m.result["triangles"].get<double>(), error, use.mark}) : std::nullopt;
+    constexpr double fullDetail = 0.01;
+    return error > fullDetail ? std::optional(Point{m.result["triangles"].get<double>(), error, use.mark}) : std::nullopt;
 }
 
 // A tick for each map.
