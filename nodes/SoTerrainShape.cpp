@@ -70,7 +70,7 @@
   \var SoSFEnum SoTerrainShape::debugView
   Draws the mesh in colours that tell how it was chosen. Lights, materials and textures do not act on them; slopes are shaded a little, unless SoLightModel is
   BASE_COLOR. Bounding box, picks and primitives stay what they are. SoGeometryClipmapTerrain draws from vertex arrays meanwhile. Such a picture
-  takes many times as long as the terrain. Default NONE.
+  takes many times as long as the terrain. Transparent terrain under SORTED_OBJECT_SORTED_TRIANGLE_BLEND is drawn by Coin from its primitives, without pictures and edges. Default NONE.
 
   TILES: each tile or block has one of sixteen colours, its neighbours have others, and it keeps it while it is drawn. SoROAMTerrain has no tiles; triangles have the colour of
   the square of the bisection that they lie in, a sixteenth of the map wide or more. Of SoGeometryClipmapTerrain the squares of 16 x 16 cells are shown in which levels are kept.

@@ -413,6 +413,32 @@ TEST_P(DebugViews, DoNotDependOnWhatTheTerrainLooksLike) {
     }
 }
 
+TEST_P(DebugViews, AreOpaqueWhateverTheTransparencyType) {
+    const Surface surface = hills();
+    Stage stage(kWidth, kHeight);
+    for (const int view : {SoTerrainShape::LEVELS, SoTerrainShape::ERRORS}) {
+        std::vector<Image> pictures;
+        for (const auto type : {SoGLRenderAction::NONE, SoGLRenderAction::SCREEN_DOOR, SoGLRenderAction::ADD, SoGLRenderAction::DELAYED_ADD,
+                                SoGLRenderAction::BLEND, SoGLRenderAction::DELAYED_BLEND, SoGLRenderAction::SORTED_OBJECT_BLEND,
+                                SoGLRenderAction::SORTED_LAYERS_BLEND}) {
+            const auto root = sceneFor(GetParam(), surface, slanted(), [](SoSeparator* group) {
+                auto* material = new SoMaterial;
+                material->transparency = 0.5f;
+                group->addChild(material);
+            });
+            terrainIn(root.get())->debugView = view;
+            terrainIn(root.get())->wireframeOverlay = TRUE;
+            stage.action().setTransparencyType(type);
+            pictures.push_back(stage.render(root.get()));
+            if (pictures.size() == 1) continue;
+            const Difference off = compare(pictures[0], pictures.back());
+            EXPECT_LE(off.mean, 1.0) << "debugView " << view << ", transparency type " << int(type);
+            EXPECT_EQ(off.onlyFirst + off.onlySecond, 0) << "debugView " << view << ", transparency type " << int(type);
+        }
+        savePicture("debug_transparent_" + identifierOf(GetParam()) + std::to_string(view), pictures);
+    }
+}
+
 TEST_P(DebugViews, KeepAFrozenMeshThatWasChosenWithoutThem) {
     const Surface surface = hills();
     Stage stage(kWidth, kHeight);
