@@ -62,6 +62,7 @@ std::vector<DebugLegend::Row> DebugLegend::rowsFor(int picture, float pixelError
         add(terrain::kStandInColour, "finer ones are on their way");
         add(terrain::kNewColour, "new in this frame");
         add(terrain::kNewStandInColour, "new, and finer to come");
+            add(terrain::kTextureToComeColour, "texture is on its way");
         break;
     default:
         break;

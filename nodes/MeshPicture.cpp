@@ -7,8 +7,10 @@
 
 #include <Inventor/actions/SoGLRenderAction.h>
 #include <Inventor/elements/SoDrawStyleElement.h>
+#include <Inventor/elements/SoMultiTextureMatrixElement.h>
 #include <Inventor/misc/SoState.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
@@ -135,10 +137,25 @@ private:
         case SoTerrainShape::LOADING: {
             terrain::DrawnPatch now = patch;
             now.isNew = patch.isNew && wanted.isSelection;
-            return terrain::loadingColour(now);
+            return !now.isNew && !now.standsIn && isTextureMissing(corner) ? terrain::kTextureToComeColour : terrain::loadingColour(now);
         }
         default: return programs.errors ? terrain::Colour(0.0f) : terrain::errorColour(errors.pixels(corner) / allowed);
         }
+    }
+
+    /// Of an SoTerrainTexture, in the middle of a triangle.
+    bool isTextureMissing(const std::array<terrain::DrawnVertex, 3> & corner) const
+    {
+        if (!frame.texture.clipmap) return false;
+        const glm::ivec2 last(frame.data.grid.columns() - 1, frame.data.grid.rows() - 1);
+        SbVec3f middle(0.0f, 0.0f, 0.0f);
+        for (const terrain::DrawnVertex & vertex : corner) {
+            const glm::ivec2 at = glm::clamp(glm::ivec2(vertex.place), glm::ivec2(0), last);
+            const SbVec2f place = frame.attributes.textureCoordinate(0, at.x, at.y);
+            middle += SbVec3f(place[0], place[1], 0.0f) / 3.0f;
+        }
+        SoMultiTextureMatrixElement::get(frame.action->getState(), 0).multVecMatrix(middle, middle);
+        return frame.texture.clipmap->isMissing({middle[0], middle[1]});
     }
 
     float shadeOf(const std::array<terrain::DrawnVertex, 3> & corner) const

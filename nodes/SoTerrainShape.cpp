@@ -85,7 +85,7 @@
   and with detailLevels, each triangle has the colour of the worst sample in view that it covers.
 
   LOADING: grey is drawn as wanted, orange stands in for finer tiles or levels that are still being built or sent, blue came in this frame, and yellow came and stands in. Nodes that load nothing are all
-  grey. SoTerrainTexture is not shown.
+  grey. Violet is ground for which texels of an SoTerrainTexture are still to come.
 */
 /*!
   \var SoSFBool SoTerrainShape::wireframeOverlay

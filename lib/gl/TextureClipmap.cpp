@@ -207,11 +207,24 @@ Result<TextureClipmap::Progress> TextureClipmap::update(const Focus& focus, std:
                        focus.finestLevel};
     const std::size_t budget = texelBudget > 0 ? texelBudget : std::numeric_limits<std::size_t>::max();
     glBindTexture(GL_TEXTURE_2D_ARRAY, array_);
+    wanted_.assign(windows_.size(), {});
     for (int level = levels() - 1; level >= std::max(0, focus.finestLevel); --level) {
         const int row = int(turned.place.y * image_->size(level).height);
-        if (auto problem = moveWindow(level, wantedAround(level, turned), row, budget, progress)) return *problem;
+        const Window wanted = wantedAround(level, turned);
+        wanted_[std::size_t(level)] = wanted;
+        if (auto problem = moveWindow(level, wanted, row, budget, progress)) return *problem;
     }
     return progress;
+}
+
+bool TextureClipmap::isMissing(glm::dvec2 place) const {
+    for (std::size_t level = 0; level < std::min(wanted_.size(), windows_.size()); ++level) {
+        const auto size = image_->size(int(level));
+        const int x = int(std::floor(place.x * size.width)), y = int(std::floor((1.0 - place.y) * size.height));
+        const auto holds = [x, y](const Window& window) { return x >= window.x0 && x < window.x1 && y >= window.y0 && y < window.y1; };
+        if (holds(wanted_[level]) && !holds(windows_[level])) return true;
+    }
+    return false;
 }
 
 std::vector<GLuint> TextureClipmap::release() {

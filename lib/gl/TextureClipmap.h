@@ -96,6 +96,8 @@ public:
     int levels() const { return int(windows_.size()); }
     /// What is there of a level.
     const Window& resident(int level) const { return windows_[std::size_t(level)]; }
+    /// Whether texels there, in texture coordinates, were wanted in the latest update() and did not come in it.
+    bool isMissing(glm::dvec2 place) const;
     std::size_t textureBytes() const { return textureBytes_; }
     /// Whether the current context has the textures.
     bool isThere() const { return small_ == 0 || glIsTexture(small_); }
@@ -115,7 +117,7 @@ private:
     std::shared_ptr<const TiledImage> image_;
     int clipSize_;
     glm::ivec2 layer_{0, 0};  ///< texels of a layer of the array: clipSize_, or all of an image that is not as wide or as high
-    std::vector<Window> windows_;
+    std::vector<Window> windows_, wanted_;  ///< by level; what the latest update wanted, empty where it wanted none
     GLuint small_ = 0, array_ = 0;
     std::size_t textureBytes_ = 0;
     std::vector<std::uint8_t> texels_;

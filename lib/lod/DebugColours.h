@@ -38,6 +38,8 @@ inline constexpr float kRounding = 1e-3f;
 /// Of what is loaded: there as wanted, in place of something finer, new in this frame, new and in place of something finer.
 inline constexpr Colour kSettledColour{0.72f, 0.72f, 0.70f}, kStandInColour{0.90f, 0.45f, 0.10f}, kNewColour{0.20f, 0.75f, 0.95f},
     kNewStandInColour{0.97f, 0.85f, 0.30f};
+/// There as wanted, but for the texture.
+inline constexpr Colour kTextureToComeColour{0.72f, 0.55f, 0.88f};
 Colour loadingColour(const DrawnPatch& patch);
 
 /// How bright a face with this unit normal is drawn, from kDarkest to 1: as if light came from the upper left. `up`: unit vector.

@@ -259,6 +259,30 @@ TEST_P(TerrainTextureScene, ComesToRestAtTheSamePictureWhateverTheBudget) {
     EXPECT_EQ(picture.pixels, fresh.render(root.get()).pixels);
 }
 
+/// debugView LOADING: violet where texels are on their way, and nowhere once all are there.
+TEST_P(TerrainTextureScene, IsShownWhileItIsLoading) {
+    const std::string path = file(waves(1024, 1024));
+    Stage stage;
+    auto* texture = tiled(path);
+    const auto root = sceneOf(GetParam(), hills(), {}, [&](SoSeparator* group) {
+        addGround(group);
+        group->addChild(texture);
+    }, cameraAt({10, 10, 30}, {20, 20, 10}, 0.5f, 300.0f));
+    terrainIn(root.get())->debugView = SoTerrainShape::LOADING;
+    const auto violet = [&] {
+        const Image picture = stage.render(root.get());
+        int count = 0;
+        for (std::size_t i = 0; i < picture.pixels.size(); i += 3) count += picture.pixels[i + 1] > 0 && 10 * picture.pixels[i + 2] > 14 * picture.pixels[i + 1];
+        return count;
+    };
+    EXPECT_EQ(violet(), 0) << "the first frame is complete";
+    texture->updateBudget = 2000;
+    root->replaceChild(0, cameraAt({55, 55, 30}, {45, 45, 10}, 0.5f, 300.0f));
+    EXPECT_GT(violet(), 1000);
+    for (int frame = 0; frame < 200 && !terrainIn(root.get())->getStatistics().converged; ++frame) violet();
+    EXPECT_EQ(violet(), 0) << "at rest";
+}
+
 TEST_P(TerrainTextureScene, TakesTexturesByItsClipSizeAndReportsThem) {
     const std::string path = file(waves(2048, 2048));
     Stage stage;
