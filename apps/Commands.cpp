@@ -109,6 +109,8 @@ const std::vector<Command>& commands() {
         rows.insert(rows.end(), others.begin(), others.end());
         const std::vector<Command> debugs = debugCommands();
         rows.insert(rows.end(), debugs.begin(), debugs.end());
+        const std::vector<Command> tools = toolCommands();
+        rows.insert(rows.end(), tools.begin(), tools.end());
         return rows;
     }();
     return table;

@@ -29,6 +29,8 @@ struct Command {
     bool repeats = false;      ///< again and again while the key is held
 };
 
+/// The rows of the menu Tools, which are part of the table.
+std::vector<Command> toolCommands();
 /// The table, which Commands.cpp holds and explains.
 const std::vector<Command>& commands();
 

@@ -63,7 +63,7 @@ void FlyArea::sceneChanged(bool keepCamera) {
     const Pose pose = keepCamera ? camera_.pose() : scene_.home();
     camera_ = makeCamera();
     if (!keepCamera) {
-        endReplay("stopped");
+        endReplay(false);
         play_.reset();
         formerError_.reset();
     }
@@ -75,6 +75,8 @@ void FlyArea::sceneChanged(bool keepCamera) {
 }
 
 void FlyArea::terrainChanged() {
+    // A replay is of the terrain that it began with.
+    if (isReplaying()) takeOver();
     frameMs_ = intervalMs_ = 0.0;
     drawnScene_ = 0;
     textMs_ = 0.0;
@@ -183,6 +185,7 @@ void FlyArea::takeOver() {
 }
 
 void FlyArea::actualRedraw() {
+    if (prepare_) prepare_();
     const Stopwatch watch;
     // What refreshes the window between two frames of a replay leaves their meshes alone.
     scene_.holdMeshes(replay_ && !due_ && !renderer_.empty());

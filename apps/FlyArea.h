@@ -63,6 +63,12 @@ public:
     void takeFocus();
     /// Who is told of every new status text.
     void onStatus(std::function<void(const std::string&)> tell) { tellStatus_ = std::move(tell); }
+    /// Who is asked to bring the scene up to date before each frame.
+    void beforeRedraw(std::function<void()> prepare) { prepare_ = std::move(prepare); }
+    /// Who is told of a click that did not look around: where in the picture, from its lower left corner, and whether with Ctrl.
+    void onClick(std::function<void(const SbVec2s& pixel, const SbVec2s& pictureSize, bool withControl)> tell) {
+        tellClick_ = std::move(tell);
+    }
     /// Writes the status over the picture too, or does not.
     void showStatus(bool on);
     /// What ended the main loop, if it was not the user or the end of the animation.
@@ -100,6 +106,7 @@ private:
     void writeReplay(bool isBenchmark, bool isWhole);
     void takeOver();
     bool mouse(const QMouseEvent& event);
+    void click(const QMouseEvent& event);
     void logFrame(const Duration& took);
     void logScene(int frame, double timeMs, const Duration& took);
     std::string status() const;
@@ -137,7 +144,10 @@ private:
     AnimationTime took_;              ///< play_, so far
     std::string message_;
     std::optional<std::pair<int, int>> drag_;
+    std::optional<std::pair<int, int>> pressed_;  ///< where a click began that may still be one
     std::function<void(const std::string&)> tellStatus_;
+    std::function<void()> prepare_;
+    std::function<void(const SbVec2s&, const SbVec2s&, bool)> tellClick_;
     bool showsStatus_ = false;  ///< over the picture
     std::optional<terrain::Error> problem_;
     std::string renderer_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstdio>
 
 #include <Inventor/fields/SoSFBool.h>
@@ -136,21 +137,37 @@ void FlyArea::toggleDetail() {
     }
 }
 
+// A button that goes down and up at nearly the same place has not looked around.
 bool FlyArea::mouse(const QMouseEvent& event) {
+    constexpr int still = 3;
+    const std::pair<int, int> here(event.x(), event.y());
+    if (event.type() == QEvent::MouseButtonPress && event.button() == Qt::LeftButton) pressed_ = here;
+    if (pressed_ && std::max(std::abs(here.first - pressed_->first), std::abs(here.second - pressed_->second)) > still)
+        pressed_.reset();
     if (!(event.buttons() & Qt::LeftButton)) {
+        if (pressed_ && event.type() == QEvent::MouseButtonRelease) click(event);
+        pressed_.reset();
         drag_.reset();
         return false;
     }
-    const std::pair<int, int> here(event.x(), event.y());
-    if (drag_ && here != *drag_) {
+    if (drag_ && here != *drag_ && !pressed_) {
         takeOver();
         if (!play_ && !replay_) {
             camera_.look(float(drag_->first - here.first) * radiansPerPixel, float(drag_->second - here.second) * radiansPerPixel);
             scene_.setPose(camera_.pose());
         }
     }
-    drag_ = here;
+    if (!drag_ || !pressed_) drag_ = here;
     return true;
+}
+
+void FlyArea::click(const QMouseEvent& event) {
+    if (!tellClick_ || ends_) return;
+    const QSize widget = getGLWidget()->size();
+    const glm::ivec2 picture = sizePixels();
+    const double x = (event.x() + 0.5) / widget.width(), y = 1.0 - (event.y() + 0.5) / widget.height();
+    tellClick_(SbVec2s(short(x * picture.x), short(y * picture.y)), SbVec2s(short(picture.x), short(picture.y)),
+               event.modifiers() & Qt::ControlModifier);
 }
 
 }  // namespace app

@@ -59,6 +59,15 @@ Output
       --offscreen[=WxH]     no window and no display (1024x768). One frame, unless -v, --flight or --frames asks for more. Without
                             -p, --stats, --measure-error and --output it prints one line of figures
       --output NAME         write the frames of --offscreen: frame-%04d.png. They wait for tiles, and so do those of --measure-error
+
+Height tools (by the full data, whatever is on screen; also in the picture)
+      --pick X,Y            position, height, slope and where the ground falls to, on standard output. Again for more
+      --profile-line X,Y,X,Y[,...]
+                            lengths, climb, descent and steepest slope of this line over the ground
+      --line-out FILE       write its profile as CSV: distance,x,y,height (and east,north of a georeferenced map)
+      --marker X,Y[,NAME]   place a marker on the ground. Again for more
+
+Window and program
   -f, --full-screen         start with a full screen
       --no-settings         neither use nor keep what the window remembers: its place, recent files. A run that is measured
                             (--frames, -p, --stats, --record, --measure-error) never does
@@ -71,6 +80,8 @@ Keys (the window's menus offer the same, and more)
   Shift+P  play it five times, and write means
   ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
   F5 terrain   F6 tiles   F7 levels of detail   F8 errors   F9 loading   O  edges over it   Z  freeze the mesh, go on
+  K  clicks show height and slope (Ctrl+click: always)    M  clicks measure a line
+  N  clicks place markers         Ctrl+P  height profile of the line               Del  forget all of these
   Left Alt+Enter, F11  full screen                        Esc  quit             F1  all keys
   1 to 7  another algorithm, in the order of -a's list
   Ctrl+O  open a terrain          Ctrl+T  open a texture                     Ctrl+,  settings

@@ -47,6 +47,9 @@ MainWindow::MainWindow(const Options& options, Scene& scene, RunLog& log, Animat
     status_->setIndent(6);
     area_ = std::make_unique<FlyArea>(middle, options_, scene_, log, std::move(animation), loadMs);
     area_->onStatus([this](const std::string& text) { setStatus(text); });
+    tools_ = std::make_unique<HeightToolsUi>(*this, scene_);
+    area_->beforeRedraw([this] { tools_->follow(); });
+    area_->onClick([this](const SbVec2s& pixel, const SbVec2s& size, bool picks) { tools_->click(pixel, size, picks); });
     addMenus();
     noteFile();
     fillRecentFiles();

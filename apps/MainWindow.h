@@ -9,6 +9,7 @@
 
 #include "Commands.h"
 #include "FlyArea.h"
+#include "HeightToolsUi.h"
 #include "Options.h"
 #include "RunLog.h"
 #include "Scene.h"
@@ -33,6 +34,8 @@ public:
     const FlyArea& area() const { return *area_; }
     Scene& scene() { return scene_; }
     const Scene& scene() const { return scene_; }
+    HeightToolsUi& tools() { return *tools_; }
+    const HeightToolsUi& tools() const { return *tools_; }
 
     /// Does what a command says, and brings menus, status and picture up to date.
     void run(const Command& command);
@@ -85,6 +88,7 @@ private:
     Settings settings_;
     Scene& scene_;
     std::unique_ptr<FlyArea> area_;
+    std::unique_ptr<HeightToolsUi> tools_;
     std::vector<Entry> entries_;
     QLabel* status_;
     QMenu* recent_;

@@ -17,6 +17,7 @@
 #include "Clock.h"
 #include "DebugViews.h"
 #include "FrameName.h"
+#include "HeightSession.h"
 #include "ImageFile.h"
 #include "Replay.h"
 #include "RunLog.h"
@@ -134,6 +135,12 @@ std::optional<Error> runOffscreen(const Options& options, Scene& scene, double s
     auto animation = Animation::make(options, scene);
     if (!animation) return animation.error();
     if (animated) scene.setPose(animation.value().flight.at(0.0));
+    HeightSession tools(scene);
+    const auto said = tools.apply(options);
+    if (!said) return said.error();
+    std::fputs(said.value().c_str(), options.stats ? stderr : stdout);
+    // For what was asked no picture is needed.
+    if (options.asksGround() && options.output.empty() && !options.isMeasured() && !animated) return std::nullopt;
     auto log = RunLog::open(options, scene);
     if (!log) return log.error();
     auto context = HeadlessContext::create(options.offscreen->x, options.offscreen->y);

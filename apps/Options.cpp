@@ -35,6 +35,10 @@ enum LongOption {
     RawSamples,
     MeasureError,
     Repeat,
+    Pick,
+    ProfileLine,
+    LineOut,
+    MarkerAt,
     Stats,
     DebugView,
     Overlay,
@@ -75,6 +79,10 @@ const option longOptions[] = {
     {"raw-type", required_argument, nullptr, RawSamples},
     {"measure-error", required_argument, nullptr, MeasureError},
     {"repeat", required_argument, nullptr, Repeat},
+    {"pick", required_argument, nullptr, Pick},
+    {"profile-line", required_argument, nullptr, ProfileLine},
+    {"line-out", required_argument, nullptr, LineOut},
+    {"marker", required_argument, nullptr, MarkerAt},
     {"stats", no_argument, nullptr, Stats},
     {"debug-view", required_argument, nullptr, DebugView},
     {"overlay", no_argument, nullptr, Overlay},
@@ -151,6 +159,7 @@ private:
     void takeSpacing(const char* value);
     void takeSize(int code, const char* value);
     void takeRawType(const char* value);
+    void takePlaces(int code, const char* value);
     void number(int code, const char* value, double lowest, bool exclusive, std::optional<double>& target);
     void whole(int code, const char* value, int lowest, std::optional<int>& target);
 };
@@ -165,6 +174,7 @@ void Reader::take(int code, const char* value) {
     case FlightFile:
     case Record:
     case Summary:
+    case LineOut:
         takeFile(code, value);
         break;
     case 'A':
@@ -195,6 +205,11 @@ void Reader::take(int code, const char* value) {
         break;
     case RawSamples:
         takeRawType(value);
+        break;
+    case Pick:
+    case ProfileLine:
+    case MarkerAt:
+        takePlaces(code, value);
         break;
     case 'a':
         takeAlgorithm(value);
@@ -262,6 +277,9 @@ void Reader::takeFile(int code, const char* value) {
         break;
     case Summary:
         options.summary = value;
+        break;
+    case LineOut:
+        options.lineOut = value;
         break;
     default:
         options.output = value;
@@ -365,6 +383,24 @@ void Reader::takeRawType(const char* value) {
     refuse("--raw-type", "one of " + known, std::string("\"") + value + "\"");
 }
 
+void Reader::takePlaces(int code, const char* value) {
+    const std::string found = std::string("\"") + value + "\"";
+    if (code == MarkerAt) {
+        const auto marker = readMarker(value);
+        if (!marker) return refuse("--marker", "X,Y or X,Y,NAME", found);
+        options.markers.push_back(*marker);
+        return;
+    }
+    const auto places = readPlaces(value);
+    if (code == Pick) {
+        if (!places || places->size() != 1) return refuse("--pick", "X,Y", found);
+        options.picks.push_back(places->front());
+        return;
+    }
+    if (!places || places->size() < 2) return refuse("--profile-line", "X0,Y0,X1,Y1 and more pairs", found);
+    options.profileLine = *places;
+}
+
 // What getopt found wrong at its current place.
 void refuseOption(Reader& reader, int code, char* const argv[]) {
     const std::string word = optind > 0 ? argv[optind - 1] : "";
@@ -390,8 +426,9 @@ void checkRepetitions(Reader& reader) {
 void checkCombination(Reader& reader) {
     const Options& o = reader.options;
     checkRepetitions(reader);
+    if (!o.lineOut.empty() && o.profileLine.empty()) reader.refuse("--line-out", "--profile-line with it", "none");
     if (!o.record.empty() && o.record == o.flight) reader.refuse("--record", "another file than --flight", o.record);
-    if (!o.namesTerrain() && (o.offscreen || o.isMeasured() || !o.output.empty()) && !reader.problem)
+    if (!o.namesTerrain() && (o.offscreen || o.isMeasured() || o.asksGround() || !o.output.empty()) && !reader.problem)
         reader.problem = missingTerrain();
     if (!o.heightMap.empty() && !o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "both");
     if (!o.scene.empty() && (o.spacing || o.heightScale)) reader.refuse("--spacing, --height-scale", "-h heightmap", "--scene");

@@ -3,10 +3,12 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
 #include "Algorithms.h"
+#include "HeightTools.h"
 #include "base/Result.h"
 #include "height/HeightSource.h"
 
@@ -23,6 +25,10 @@ struct Options {
     std::string record;                       ///< --record
     std::string output;                       ///< --output
     std::string summary;                      ///< --summary
+    std::string lineOut;                      ///< --line-out
+    std::vector<glm::dvec2> picks;            ///< --pick
+    std::vector<glm::dvec2> profileLine;      ///< --profile-line
+    std::vector<Marker> markers;              ///< --marker
     const Algorithm* algorithm = nullptr;     ///< -a; null: roam for a height map, whatever a scene file holds for a scene
     std::optional<double> animationTime;      ///< -A, milliseconds
     std::optional<double> frameTime;          ///< -F, milliseconds
@@ -61,6 +67,8 @@ struct Options {
     }
     /// Whether every frame of a flight is drawn complete, so that it has the same triangles whenever it is flown.
     bool replays() const { return (!flight.empty() && !synchronize) || repeat; }
+    /// Whether the height tools have something to do.
+    bool asksGround() const { return !picks.empty() || !profileLine.empty() || !markers.empty(); }
     /// Whether there is more to draw than one picture.
     bool animates() const { return animate || frames || !flight.empty(); }
 

@@ -53,6 +53,15 @@ float Scene::size() const {
     return side > 0.0f ? side : 1.0f;
 }
 
+float Scene::localSize() const {
+    if (!terrainPath_) return size();
+    SoGetMatrixAction matrices(SbViewportRegion(1, 1));
+    matrices.apply(terrainPath_.get());
+    SbVec3f across;
+    matrices.getInverse().multDirMatrix(SbVec3f(size(), 0.0f, 0.0f), across);
+    return across.length();
+}
+
 FlightArea Scene::flightArea() const {
     const SbVec3f extent = box_.getMax() - box_.getMin();
     // The standard placement has heights up to 0.051 and flies at 0.07; elsewhere that gap over the highest point is kept.

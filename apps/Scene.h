@@ -47,8 +47,11 @@ public:
     SoSeparator* root() const { return root_.get(); }
     SoCamera* camera() const { return camera_; }
     SoNode* terrain() const { return terrain_; }  ///< null in a scene file without a shape
+    SoPath* terrainPath() const { return terrainPath_.get(); }  ///< from the root
     const std::string& algorithm() const { return algorithm_; }
     const SbBox3f& box() const { return box_; }
+    /// The same in the terrain's own coordinates.
+    float localSize() const;
     float size() const;  ///< of the ground: the longer side of the box in x and y
     const Pose& home() const { return home_; }
     FlightArea flightArea() const;
@@ -72,6 +75,8 @@ public:
 
     /// Of a height map: factor from samples to heights.
     double heightScale() const;
+    /// The samples that the terrain node stands on; null where it stands on coordinates.
+    std::shared_ptr<const terrain::HeightSource> heightSource() const;
 
     /// Moves the camera, and its clipping planes when they are ours to choose.
     void setPose(const Pose& pose);
@@ -106,7 +111,6 @@ private:
     void replaceTerrain(SoNode* fresh);
     void addHeightMap(const Options& options);
     std::optional<terrain::Error> addCoinArrays(SoSeparator& group, Feed feed, const std::string& name);
-    std::shared_ptr<const terrain::HeightSource> heightSource() const;
     const TerrainGrid* completeGrid();
     std::vector<SoTerrainShape*> terrainShapes() const;
 

@@ -10,6 +10,8 @@
 #include <Inventor/nodes/SoQuadMesh.h>
 #include <Inventor/nodes/SoTextureCoordinate2.h>
 
+#include <glm/geometric.hpp>
+
 namespace app {
 
 using terrain::HeightMap;
@@ -52,25 +54,43 @@ std::optional<glm::dvec2> ownSpacing(const HeightSource& source) {
     return extent.spacing * glm::dvec2(metresPerDegree * std::max(0.01, std::cos(latitude)), metresPerDegree);
 }
 
+// Lengths have the file's unit only where they are the file's.
+std::optional<Georeference> georeferenceOf(const HeightSource& source, const TerrainGrid& grid) {
+    const terrain::HeightExtent extent = source.extent();
+    const std::string wkt = source.map() ? source.map()->projection : std::string();
+    if (wkt.empty() && extent.origin == glm::dvec2(0.0, 0.0)) return std::nullopt;
+    Georeference reference{extent.origin, extent.spacing, systemName(wkt), isGeographic(wkt), ""};
+    if (grid.heightScale != 1.0) return reference;
+    if (reference.isGeographic && grid.spacing == ownSpacing(source)) reference.unit = "m";
+    if (!reference.isGeographic && grid.spacing == extent.spacing) reference.unit = lengthUnit(wkt);
+    return reference;
+}
+
 }  // namespace
 
-std::optional<float> TerrainGrid::heightAt(float x, float y) const {
+std::optional<Ground::Surface> TerrainGrid::surfaceAt(double x, double y) const {
     const HeightMap* map = source ? source->map() : nullptr;
     const double column = x / spacing.x, row = y / spacing.y;
     if (!map || !(column >= 0.0 && row >= 0.0 && column <= columns - 1.0 && row <= rows - 1.0)) return std::nullopt;
     const int c = std::min(int(column), columns - 2), r = std::min(int(row), rows - 2);
     const double u = column - c, v = row - r;
     const double h00 = map->at(c, r), h10 = map->at(c + 1, r), h01 = map->at(c, r + 1), h11 = map->at(c + 1, r + 1);
-    const double h =
-        u + v <= 1.0 ? h00 + u * (h10 - h00) + v * (h01 - h00) : h11 + (1.0 - u) * (h01 - h11) + (1.0 - v) * (h10 - h11);
+    const bool isLower = u + v <= 1.0;
+    const double h = isLower ? h00 + u * (h10 - h00) + v * (h01 - h00) : h11 + (1.0 - u) * (h01 - h11) + (1.0 - v) * (h10 - h11);
     if (std::isnan(h)) return std::nullopt;
-    return float(h * heightScale + heightOffset);
+    const glm::dvec2 rise = heightScale * (isLower ? glm::dvec2(h10 - h00, h01 - h00) : glm::dvec2(h11 - h01, h11 - h10)) / spacing;
+    return Ground::Surface{h * heightScale + heightOffset, glm::normalize(glm::dvec3(-rise, 1.0))};
+}
+
+std::optional<float> TerrainGrid::heightAt(float x, float y) const {
+    const auto surface = surfaceAt(x, y);
+    return surface ? std::optional(float(surface->height)) : std::nullopt;
 }
 
 Result<TerrainGrid> placeGrid(std::shared_ptr<const HeightSource> source, std::optional<glm::dvec2> spacing,
                               std::optional<double> heightScale) {
     const terrain::HeightExtent extent = source->extent();
-    TerrainGrid grid{source, extent.columns, extent.rows, {}, heightScale.value_or(1.0), 0.0, 0.0, 0.0};
+    TerrainGrid grid{source, extent.columns, extent.rows, {}, heightScale.value_or(1.0), 0.0, 0.0, 0.0, std::nullopt};
     // The coarsest tile knows the extremes of everything below it.
     const auto root = source->load({source->levelCount() - 1, 0, 0, 1});
     if (!root) return root.error();
@@ -82,6 +102,7 @@ Result<TerrainGrid> placeGrid(std::shared_ptr<const HeightSource> source, std::o
     grid.spacing = spacing.value_or(glm::dvec2(1.0 / extent.columns, 1.0 / extent.rows));
     grid.minimum = lowest * grid.heightScale + grid.heightOffset;
     grid.maximum = highest * grid.heightScale + grid.heightOffset;
+    grid.georeference = georeferenceOf(*source, grid);
     return grid;
 }
 

@@ -8,6 +8,7 @@
 #include <Inventor/SbVec3f.h>
 #include <glm/vec2.hpp>
 
+#include "HeightTools.h"
 #include "base/Result.h"
 #include "height/HeightSource.h"
 
@@ -30,12 +31,15 @@ struct TerrainGrid {
     double heightOffset = 0.0;
     double minimum = 0.0;  ///< of the placed heights
     double maximum = 0.0;
+    std::optional<Georeference> georeference;  ///< where the file says so
 
     SbVec3f point(int column, int row, float height) const {
         return SbVec3f(float(column * spacing.x), float(row * spacing.y), float(height * heightScale + heightOffset));
     }
     /// Height over (x, y) on the full-resolution triangles; nothing outside, in a hole, or when the map is not in memory.
     std::optional<float> heightAt(float x, float y) const;
+    /// The triangle there.
+    std::optional<Ground::Surface> surfaceAt(double x, double y) const;
 };
 
 /// Greatest height of the standard placement: 255 * 0.0002.

@@ -61,6 +61,7 @@ std::optional<Error> runWindow(const Options& options, Scene& scene, double star
     auto log = RunLog::open(options, scene);
     if (!log) return log.error();
     MainWindow window(options, scene, log.value(), animation.value(), nowMs() - startedMs);
+    if (auto problem = window.tools().apply(options)) return problem;
     SoQt::show(&window);
     if (options.fullScreen) window.toggleFullScreen();
     SoQt::mainLoop();
