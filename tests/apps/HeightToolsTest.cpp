@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -18,6 +21,7 @@
 #include <glm/geometric.hpp>
 
 #include "NodePtr.h"
+#include "ToolsDrawing.h"
 
 namespace {
 
@@ -254,6 +258,27 @@ TEST(HeightText, MarkersAreReadAsTheyWereWritten)
     const auto wrong = app::readMarkersCsv("x,y,name\n1,2,a\n1;2\n", "m.csv");
     ASSERT_FALSE(wrong);
     EXPECT_NE(wrong.error().message().find("m.csv:3"), std::string::npos);
+}
+
+TEST_F(HeightTools, MarkersAreReadFromTheSceneThatTheyWereWrittenTo)
+{
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("markers-" + std::to_string(getpid()));
+    std::filesystem::create_directory(folder);
+    const std::vector<app::Marker> markers{{{1.5, -2.25}, "hut"}, {{4.0, 5.0}, "a \"name\", with all"}, {{3.0, 4.0}, ""}};
+    for (const char* name : {"m.iv", "m.csv"}) {
+        const std::string path = (folder / name).string();
+        ASSERT_FALSE(app::writeMarkers(path, markers, 100.0f)) << name;
+        const auto read = app::readMarkers(path);
+        ASSERT_TRUE(read) << read.error().message();
+        ASSERT_EQ(read.value().size(), markers.size()) << name;
+        for (std::size_t i = 0; i < markers.size(); ++i) {
+            EXPECT_EQ(read.value()[i].at, markers[i].at) << name;
+            EXPECT_EQ(read.value()[i].name, markers[i].name) << name;
+        }
+        EXPECT_FALSE(app::readMarkers((folder / "none" / name).string()));
+        EXPECT_TRUE(app::writeMarkers((folder / "none" / name).string(), markers, 100.0f));
+    }
+    std::filesystem::remove_all(folder);
 }
 
 TEST(HeightText, PlacesAreReadInPairs)
