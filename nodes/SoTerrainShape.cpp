@@ -59,7 +59,15 @@
 */
 /*!
   \var SoSFBool SoTerrainShape::frozenFrustum
-  Whether the edges of the view volume that a frozen mesh was chosen for are drawn, as yellow lines. Default FALSE.
+  Whether the edges of the view volume that a frozen mesh was chosen for are drawn, as yellow lines. In any program, once the camera stands where you want it:
+
+  \code
+  terrain->freeze = TRUE;
+  terrain->frozenFrustum = TRUE;
+  camera->position = outside;  // and look back
+  \endcode
+
+  Default FALSE.
 */
 /*!
   \enum SoTerrainShape::DebugView
