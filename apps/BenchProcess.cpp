@@ -20,10 +20,10 @@ constexpr const char* flag = "--measure-here";
 BenchOutcome benchInProcess(const BenchRequest& request, double seconds, bool talk) {
     const ProcessEnd end = runProcess({"/proc/self/exe", flag, toJson(request).dump()}, {}, seconds);
     if (talk) std::fputs(end.err.c_str(), stderr);
-    if (!end.succeeded()) return {nullptr, end.reason()};
+    if (!end.succeeded()) return {nullptr, end.reason(), end.late};
     ordered_json result = ordered_json::parse(end.out, nullptr, false);
-    if (result.is_discarded() || !result.is_object()) return {nullptr, "its answer can't be read"};
-    return {std::move(result), {}};
+    if (result.is_discarded() || !result.is_object()) return {nullptr, "its answer can't be read", false};
+    return {std::move(result), {}, false};
 }
 
 std::optional<int> runBenchProcess(int argc, char** argv, const char* program) {

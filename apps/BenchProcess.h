@@ -14,6 +14,7 @@ namespace app {
 struct BenchOutcome {
     nlohmann::ordered_json result;  ///< null when it failed
     std::string problem;
+    bool late = false;  ///< it was ended because its time was over
 };
 
 /// Runs this program again, to measure; at most so many seconds, unless 0. Passes on what it writes to stderr when `talk` is set.

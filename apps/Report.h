@@ -39,6 +39,7 @@ struct Measurement {
     double weight = 1.0;            ///< about how long it takes, relative to others
     nlohmann::ordered_json result;  ///< of runBench(); null when it failed or was left out
     std::string problem;            ///< why
+    bool leftOut = false;           ///< because time was over
     bool measured() const { return !result.is_null(); }
 };
 

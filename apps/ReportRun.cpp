@@ -74,13 +74,12 @@ std::string plainReason(const std::string& reason) {
 bool measureReport(const ReportOptions& options, ReportPlan& plan) {
     Progress progress(plan);
     const double end = 60.0 * options.minutes - std::min(lastSeconds, 6.0 * options.minutes);
-    std::size_t leftOut = 0;
     for (Measurement* next : inOrder(plan)) {
         Measurement& m = *next;
         const double left = end - progress.seconds();
         if (left <= 0.0) {
             m.problem = "no time was left for it";
-            ++leftOut;
+            m.leftOut = true;
             continue;
         }
         progress.begin(m);
@@ -91,10 +90,13 @@ bool measureReport(const ReportOptions& options, ReportPlan& plan) {
         }
         m.result = std::move(outcome.result);
         m.problem = plainReason(outcome.problem);
+        m.leftOut = outcome.late;
         if (!m.problem.empty()) progress.say(std::string(program) + ": " + m.label + " is not measured: " + m.problem);
     }
     plan.seconds = progress.seconds();
     progress.end();
+    const auto leftOut =
+        std::count_if(plan.measurements.begin(), plan.measurements.end(), [](const Measurement& m) { return m.leftOut; });
     if (leftOut)
         progress.say(std::string(program) + ": there was no time for " + std::to_string(leftOut) + " of " +
                      std::to_string(plan.measurements.size()) + " measurements; --minutes gives more");
