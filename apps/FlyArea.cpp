@@ -43,6 +43,8 @@ FlyArea::FlyArea(QWidget* parent, const Options& options, Scene& scene, RunLog& 
     all->addChild(scene.root());
     all->addChild(legend_.root());
     all->addChild(statusLine_.root());
+    all->addChild(meters_.root());
+    meters_.setOn(options.meters);
     setBackgroundColor(SbColor(skyColor));
     setSceneGraph(all);
     timer_.setTimerType(Qt::PreciseTimer);
@@ -92,6 +94,7 @@ void FlyArea::play(Animation animation) {
 
 void FlyArea::wake() {
     legend_.update(scene_, getViewportRegion().getViewportSizePixels());
+    meters_.setScale(float(getGLWidget()->devicePixelRatioF()));
     activeUntilMs_ = nowMs() + restMs;
     runTimer();
 }

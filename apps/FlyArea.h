@@ -14,6 +14,7 @@
 #include "FlyCamera.h"
 #include "Options.h"
 #include "FrameStatistics.h"
+#include "Meters.h"
 #include "Replay.h"
 #include "RunLog.h"
 #include "Scene.h"
@@ -37,6 +38,7 @@ public:
     /// More or fewer levels of a clipmap than there are now; as many as the view needs for 0.
     void changeLevels(int by);
     void toggleConstantHeight();
+    void toggleMeters() { meters_.setOn(!meters_.isOn()); }
     void goHome();
     /// Records the camera, or writes down what was recorded.
     void toggleRecord();
@@ -47,6 +49,7 @@ public:
     bool culling() const;
     bool fullDetail() const { return formerError_.has_value(); }
     bool constantHeight() const { return camera_.constantHeight(); }
+    bool showsMeters() const { return meters_.isOn(); }
     bool isRecording() const { return recording_.has_value(); }
     bool isReplaying() const { return replay_ && !ends_; }
     bool isBenchmarking() const { return isReplaying() && replay_->flights() > 1; }
@@ -119,6 +122,7 @@ private:
     FlyCamera camera_;
     StatusLine statusLine_;
     DebugLegend legend_;
+    Meters meters_;
     QTimer timer_;
     std::optional<Play> play_;
     bool ends_;             ///< the program ends with the animation

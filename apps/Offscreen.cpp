@@ -19,6 +19,7 @@
 #include "FrameName.h"
 #include "HeightSession.h"
 #include "ImageFile.h"
+#include "Meters.h"
 #include "Replay.h"
 #include "RunLog.h"
 
@@ -39,6 +40,7 @@ public:
         action_.setCacheContext(SoGLCacheContextElement::getUniqueCacheContext());
         context_.bindFramebuffer();
         glEnable(GL_DEPTH_TEST);
+        meters_.setOn(options.meters);
         glClearColor(skyColor[0], skyColor[1], skyColor[2], 1.0f);
     }
 
@@ -50,6 +52,7 @@ public:
         action_.apply(scene_.root());
         legend_.update(scene_, SbVec2s(short(context_.width()), short(context_.height())));
         if (legend_.root()->getNumChildren() > 0) action_.apply(legend_.root());
+        if (meters_.isOn()) action_.apply(meters_.root());
     }
 
     /// What a whole frame takes.
@@ -88,6 +91,7 @@ private:
     HeadlessContext& context_;
     SoGLRenderAction action_;
     DebugLegend legend_;
+    Meters meters_;
 };
 
 std::optional<Error> OffscreenRun::animate(RunLog& log, const Animation& animation) {

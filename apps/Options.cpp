@@ -42,6 +42,7 @@ enum LongOption {
     Stats,
     DebugView,
     Overlay,
+    ShowMeters,
     FreezeAt,
     NoSettings,
     Summary,
@@ -86,6 +87,7 @@ const option longOptions[] = {
     {"stats", no_argument, nullptr, Stats},
     {"debug-view", required_argument, nullptr, DebugView},
     {"overlay", no_argument, nullptr, Overlay},
+    {"meters", no_argument, nullptr, ShowMeters},
     {"freeze-at", required_argument, nullptr, FreezeAt},
     {"no-settings", no_argument, nullptr, NoSettings},
     {"summary", required_argument, nullptr, Summary},
@@ -236,6 +238,9 @@ void Reader::takeFlag(int code) {
         break;
     case Stats:
         options.stats = true;
+        break;
+    case ShowMeters:
+        options.meters = true;
         break;
     case Overlay:
         options.overlay = true;

@@ -50,6 +50,7 @@ struct Options {
     const DebugPicture* debugPicture = nullptr;  ///< --debug-view
     std::optional<double> freezeAt;           ///< --freeze-at, milliseconds of the animation
     bool overlay = false;                     ///< --overlay
+    bool meters = false;                      ///< --meters
     bool fullScreen = false;                  ///< -f
     bool frustumCulling = false;              ///< -c
     bool animate = false;                     ///< -v

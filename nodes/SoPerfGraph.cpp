@@ -25,7 +25,7 @@
   <tr><td>selection</td><td>ms</td><td>terrain nodes: choosing their meshes</td></tr>
   <tr><td>upload</td><td>ms</td><td>terrain nodes: filling buffers and textures</td></tr>
   <tr><td>drawing</td><td>ms</td><td>terrain nodes: GL's drawing calls, as the calling thread sees them</td></tr>
-  <tr><td>building</td><td>ms</td><td>terrain nodes: preparing new height data and new tiles, in whatever thread</td></tr>
+  <tr><td>building</td><td>ms</td><td>terrain nodes: preparing height data that is new or has changed, in frames that do it; not tiles that other threads build</td></tr>
   <tr><td>triangles</td><td></td><td>terrain nodes: triangles sent to GL</td></tr>
   <tr><td>draw calls</td><td></td><td>terrain nodes: calls of GL for them</td></tr>
   <tr><td>patches</td><td></td><td>terrain nodes: parts that are drawn at one level each</td></tr>
@@ -41,6 +41,9 @@
   What several terrain nodes count adds up, but for the error. Amounts are those since the frame of this view before: where several views
   are drawn, each shows the work for all of them. A time of more than 2 seconds between two frames is a rest and no frame's time. The node
   asks for no frames: a picture at rest rests.
+
+  Six graphs of the default size take 1.8 % of the processor's instructions for a frame of 1024 x 768 pixels of SoROAMTerrain over data/terrain.png
+  where Mesa's llvmpipe draws it, and about 1.3 % where nothing is rasterised.
 
   GL and Coin's state are afterwards what they were, and nothing of them acts on graphs: lights, textures, shader programs, clip planes, fog,
   draw styles. They are drawn with fixed functions of GL 1.1, without a buffer object; a context of GL's core profile has none, and no

@@ -15,6 +15,8 @@ done
 EGL_PLATFORM=surfaceless expect 0 "$TEST" $map --overlay --offscreen=320x240 --output "$SCRATCH/overlay.ppm"
 EGL_PLATFORM=surfaceless expect 0 "$TEST" $map --offscreen=320x240 --output "$SCRATCH/plain.ppm"
 cmp -s "$SCRATCH/overlay.ppm" "$SCRATCH/plain.ppm" && fail "--overlay shows nothing"
+EGL_PLATFORM=surfaceless expect 0 "$TEST" $map --meters --offscreen=320x240 --output "$SCRATCH/meters.ppm"
+cmp -s "$SCRATCH/meters.ppm" "$SCRATCH/plain.ppm" && fail "--meters shows nothing"
 expect 2 "$TEST" $map --debug-view colours
 grep -q 'expected one of none, tiles, levels, errors, loading, found "colours"' "$SCRATCH/err" || { fail "a wrong picture"; cat "$SCRATCH/err"; }
 EGL_PLATFORM=surfaceless expect 0 "$TEST" $map -a quadmesh --debug-view tiles --offscreen=64x48 --output "$SCRATCH/other.ppm"
@@ -46,6 +48,10 @@ xdotool key o
 shot edges
 moved terrain edges || fail "O shows no edges"
 xdotool key o
+xdotool key m
+shot meters
+moved terrain meters || fail "M shows no meters"
+xdotool key m
 xdotool key z
 says frozen || fail "Z does not freeze: $(title)"
 press s
