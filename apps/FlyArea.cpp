@@ -69,7 +69,7 @@ void FlyArea::sceneChanged(bool keepCamera) {
         play_.reset();
         formerError_.reset();
     }
-    if (!play_) {
+    if (!play_ && !replay_) {
         camera_.setPose(pose);
         scene_.setPose(pose);
     }
@@ -262,6 +262,12 @@ void FlyArea::logScene(int frame, double timeMs, const Duration& took) {
 void FlyArea::showStatus(bool on) {
     showsStatus_ = on;
     statusLine_.setText(on ? status() : "");
+    wake();
+}
+
+void FlyArea::say(const std::string& message) {
+    message_ = message;
+    textMs_ = 0.0;
     wake();
 }
 

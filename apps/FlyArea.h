@@ -19,6 +19,7 @@
 #include "RunLog.h"
 #include "Scene.h"
 #include "StatusLine.h"
+#include "gl/HeadlessContext.h"
 
 class QKeyEvent;
 class QMouseEvent;
@@ -62,6 +63,8 @@ public:
     void sceneChanged(bool keepCamera);
     /// Draws and follows the scene again, after something has changed.
     void wake();
+    /// Whether the scene has been drawn since it changed its terrain.
+    bool isDrawn() const { return drawnScene_ != 0; }
     /// Gives the keyboard to this area.
     void takeFocus();
     /// Who is told of every new status text.
@@ -80,6 +83,10 @@ public:
     const std::string& renderer() const { return renderer_; }
     /// Of the picture.
     glm::ivec2 sizePixels() const;
+    /// The picture as it is, without the status. Error: there is none yet, or no frame buffer for it.
+    terrain::Result<terrain::Image> picture();
+    /// A message at the end of the status, until the next one.
+    void say(const std::string& message);
 
 protected:
     void processEvent(QEvent* event) override;

@@ -70,7 +70,7 @@ Height tools (by the full data, whatever is on screen; also in the picture)
 
 Window and program
   -f, --full-screen         start with a full screen
-      --no-settings         neither use nor keep what the window remembers: its place, recent files. A run that is measured
+      --no-settings         neither use nor keep what the window remembers: its place, recent files, settings. A run that is measured
                             (--frames, -p, --stats, --record, --measure-error) never does
       --help, --version
 
@@ -87,8 +87,10 @@ Keys (the window's menus offer the same, and more)
   Left Alt+Enter, F11  full screen                        Esc  quit             F1  all keys
   1 to 7  another algorithm, in the order of -a's list
   Ctrl+O  open a terrain          Ctrl+T  open a texture                     Ctrl+,  settings
+  F12  save the picture to soterrain-0001.png, or the next free number              Ctrl+S  to a file of your choice
 
 Without -h and --scene the window shows the installed terrain, or waits for a file: File > Open, or one that is dropped on it.
+It then begins with the settings that it was left with, for what the command line does not say.
 
 R writes soterrain-flight.csv; P replays the latest record, or else --flight, and writes its profile, as -p does, to
 soterrain-replay.csv; Shift+P replays it five times, after once without measuring, and writes soterrain-benchmark.csv,

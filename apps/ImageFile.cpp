@@ -72,6 +72,10 @@ Result<Image> readImage(const std::string& path) {
     return image;
 }
 
+bool picturesAreCompressed() {
+    return true;
+}
+
 int channelCount(const std::string& path) {
     const auto input = OIIO::ImageInput::open(path);
     if (!input) OIIO::geterror();  // or it is complained about at the end
@@ -93,6 +97,10 @@ std::optional<Error> writeImage(const std::string& path, const Image& image, int
 
 Result<Image> readImage(const std::string& path) {
     return readPnm(path);
+}
+
+bool picturesAreCompressed() {
+    return false;
 }
 
 int channelCount(const std::string& path) {

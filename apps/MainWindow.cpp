@@ -9,11 +9,13 @@
 #include <Inventor/Qt/SoQt.h>
 #include <QAction>
 #include <QActionGroup>
+#include <QApplication>
 #include <QCloseEvent>
 #include <QLabel>
 #include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QProgressBar>
 #include <QScreen>
 #include <QStatusBar>
 
@@ -37,13 +39,16 @@ QList<QKeySequence> keySequences(const std::string& keys) {
 
 MainWindow::MainWindow(const Options& options, Scene& scene, RunLog& log, Animation animation, double loadMs)
     : options_(options), settings_(!options.isMeasured() && !options.noSettings), scene_(scene), status_(new QLabel),
-      recent_(new QMenu("Open &recent", this)) {
+      recent_(new QMenu("Open &recent", this)), streaming_(new QProgressBar) {
     setWindowTitle("SoTerrainTest");
     setAcceptDrops(true);
     auto* middle = new QWidget(this);
     middle->setMinimumSize(160, 120);
     setCentralWidget(middle);
     statusBar()->addWidget(status_, 1);
+    streaming_->setMaximumSize(220, 14);
+    statusBar()->addPermanentWidget(streaming_);
+    streaming_->hide();
     status_->setIndent(6);
     area_ = std::make_unique<FlyArea>(middle, options_, scene_, log, std::move(animation), loadMs);
     area_->onStatus([this](const std::string& text) { setStatus(text); });
@@ -56,6 +61,7 @@ MainWindow::MainWindow(const Options& options, Scene& scene, RunLog& log, Animat
     placeWindow();
     area_->show();
     area_->takeFocus();
+    announce("Preparing the terrain...");
 }
 
 MainWindow::~MainWindow() = default;
@@ -109,7 +115,7 @@ QAction* MainWindow::addCommand(const Command& command) {
 }
 
 void MainWindow::run(const Command& command) {
-    if (command.isPossible && !command.isPossible(*this)) return;
+    if (isBusy_ || (command.isPossible && !command.isPossible(*this))) return;
     command.run(*this);
     refresh();
     area_->wake();
@@ -126,22 +132,50 @@ void MainWindow::refresh() {
 void MainWindow::setStatus(const std::string& text) {
     setWindowTitle(QString::fromLocal8Bit(("SoTerrainTest: " + text + (fileName_.empty() ? "" : "   " + fileName_)).c_str()));
     status_->setText(QString::fromStdString(text));
+    if (isAnnounced_ && area_->isDrawn()) endAnnouncement();
+    showStreaming();
     refresh();
+}
+
+// The frame that follows keeps the window waiting: a terrain is prepared in it.
+void MainWindow::announce(const char* what) {
+    if (!isAnnounced_) QApplication::setOverrideCursor(Qt::BusyCursor);
+    isAnnounced_ = true;
+    statusBar()->showMessage(what);
+    if (isVisible()) QCoreApplication::processEvents(QEventLoop::ExcludeUserInputEvents);
+}
+
+void MainWindow::endAnnouncement() {
+    if (!isAnnounced_) return;
+    isAnnounced_ = false;
+    QApplication::restoreOverrideCursor();
+    statusBar()->clearMessage();
+}
+
+// While tiles are built or a limit on work per frame holds refinement back.
+void MainWindow::showStreaming() {
+    const FrameFigures figures = scene_.figures();
+    const bool streams = area_->isDrawn() && figures.terrain && !figures.terrain->isComplete;
+    if (streaming_->isHidden() == streams) {
+        streaming_->setVisible(streams);
+        streaming_->setRange(0, streams ? 0 : 1);
+        streaming_->setToolTip("Finer parts of the terrain are on their way.");
+    }
 }
 
 void MainWindow::say(const std::string& message) {
     statusBar()->showMessage(QString::fromStdString(message), messageMs);
 }
 
-// The geometry is set too, for displays without a window manager that would do it.
+// The geometry is set too, for displays without a window manager that would do it; there Qt forgets the state again.
 void MainWindow::toggleFullScreen() {
-    const bool full = isFullScreen();
-    if (!full) windowed_ = geometry();
-    menuBar()->setVisible(full);
-    statusBar()->setVisible(full);
-    area_->showStatus(!full);
-    setWindowState(windowState() ^ Qt::WindowFullScreen);
-    setGeometry(full ? windowed_ : screen()->geometry());
+    fillsScreen_ = !fillsScreen_;
+    if (fillsScreen_) windowed_ = geometry();
+    menuBar()->setVisible(!fillsScreen_);
+    statusBar()->setVisible(!fillsScreen_);
+    area_->showStatus(fillsScreen_);
+    setWindowState(fillsScreen_ ? windowState() | Qt::WindowFullScreen : windowState() & ~Qt::WindowFullScreen);
+    setGeometry(fillsScreen_ ? screen()->geometry() : windowed_);
     area_->takeFocus();
 }
 
@@ -149,6 +183,7 @@ void MainWindow::setAlgorithm(const Algorithm& algorithm) {
     if (scene_.shows(algorithm)) return;
     Options now = options_;
     scene_.readFields(now);
+    announce("Preparing the terrain...");
     if (auto problem = scene_.setAlgorithm(algorithm, now)) return fail(*problem);
     now.algorithm = &algorithm;
     if (scene_.isHeightMap()) options_ = now;
@@ -179,7 +214,12 @@ void MainWindow::showAbout() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    if (!isFullScreen()) settings_.setWindowGeometry(saveGeometry());
+    if (isBusy_) return event->ignore();
+    if (scene_.isHeightMap()) {
+        scene_.readFields(options_);
+        settings_.keep(options_);
+    }
+    if (!fillsScreen_) settings_.setWindowGeometry(saveGeometry());
     event->accept();
     SoQt::exitMainLoop();
 }

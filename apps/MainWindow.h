@@ -19,6 +19,7 @@ class QAction;
 class QDialog;
 class QLabel;
 class QMenu;
+class QProgressBar;
 
 namespace app {
 
@@ -45,6 +46,9 @@ public:
     void chooseFiles();
     void chooseTexture();
     void setTexture(const std::string& path);  ///< empty: none
+    /// Writes the picture, without menus and status, to the next free file of a row, or to one that the user names.
+    void savePicture();
+    void choosePicture();
     bool canOpen() const;
     bool canTexture() const;
     /// Draws the terrain with another algorithm; camera, texture and settings stay.
@@ -56,6 +60,7 @@ public:
     /// A message in the status bar, for some seconds.
     void say(const std::string& message);
     void toggleFullScreen();
+    bool fillsScreen() const { return fillsScreen_; }
     void showKeys();
     void showAbout();
 
@@ -81,7 +86,12 @@ private:
     bool showScene(const Options& next, bool keepCamera);
     void openFile(const RecentFile& file);
     void noteFile();
+    Errand errand();
+    void announce(const char* what);
+    void endAnnouncement();
+    void showStreaming();
     void fillRecentFiles();
+    void writePicture(const std::string& path);
     QString folder() const;
 
     Options options_;  ///< what is shown, and how
@@ -95,6 +105,11 @@ private:
     QDialog* keys_ = nullptr;
     SettingsDialog* settingsDialog_ = nullptr;
     std::string fileName_;
+    QProgressBar* streaming_;
+    bool isBusy_ = false;       ///< a file is being read
+    bool isCancelled_ = false;  ///< and was not, because the user did not want it any more
+    bool isAnnounced_ = false;  ///< the next frame takes long
+    bool fillsScreen_ = false;
     QRect windowed_;  ///< geometry outside full screen
 };
 

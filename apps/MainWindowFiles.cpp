@@ -9,17 +9,21 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include <QDragEnterEvent>
 #include <QDropEvent>
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QUrl>
 
+#include "ImageFile.h"
 #include "MainWindow.h"
 #include "OpenFiles.h"
+#include "ProgressWindow.h"
 #include "RawDialog.h"
 
 namespace app {
@@ -97,18 +101,30 @@ Options forScene(Options options) {
 
 }  // namespace
 
+Errand MainWindow::errand() {
+    return [this](const std::string& what, const std::function<void(terrain::ReadProgress&)>& work) {
+        isBusy_ = true;
+        isCancelled_ = !runBehindProgress(this, what, work);
+        isBusy_ = false;
+    };
+}
+
 void MainWindow::fail(const Error& problem) {
+    endAnnouncement();
+    if (std::exchange(isCancelled_, false)) return say("Cancelled: " + problem.subject);
     std::fprintf(stderr, "SoTerrainTest: %s\n", problem.message().c_str());
     QMessageBox::warning(this, "SoTerrainTest", text(problem.message()));
 }
 
 bool MainWindow::showScene(const Options& next, bool keepCamera) {
-    auto built = Scene::build(next.scene.empty() ? next : forScene(next), false);
+    auto built = Scene::build(next.scene.empty() ? next : forScene(next), false, errand());
     if (!built) {
         fail(built.error());
         return false;
     }
     const bool wireframe = scene_.wireframe();
+    isCancelled_ = false;
+    announce("Preparing the terrain...");
     options_ = next;
     scene_ = std::move(built).value();
     scene_.setWireframe(wireframe);
@@ -128,7 +144,7 @@ void MainWindow::noteFile() {
 }
 
 void MainWindow::openFiles(const std::vector<std::string>& paths) {
-    if (area_->endsByItself()) return;
+    if (isBusy_ || !canOpen()) return;
     std::string scene, map, picture;
     for (const std::string& path : paths) {
         const FileKind kind = fileKind(path);
@@ -164,7 +180,7 @@ void MainWindow::showAgain(const Options& next) {
 }
 
 void MainWindow::setTexture(const std::string& path) {
-    if (auto problem = scene_.setTexture(path)) return fail(*problem);
+    if (auto problem = scene_.setTexture(path, errand())) return fail(*problem);
     options_.texture = path;
     noteFile();
     area_->wake();
@@ -200,6 +216,37 @@ bool MainWindow::canTexture() const {
     return canOpen() && scene_.isHeightMap();
 }
 
+// soterrain-0001.png, or the first number after it that is free.
+void MainWindow::savePicture() {
+    char name[40];
+    int number = 0;
+    std::error_code ignored;
+    do {
+        std::snprintf(name, sizeof name, "soterrain-%04d.%s", ++number, picturesAreCompressed() ? "png" : "ppm");
+    } while (std::filesystem::exists(std::filesystem::symlink_status(name, ignored)));
+    writePicture(name);
+}
+
+void MainWindow::choosePicture() {
+    // What is seen now, not what the dialog leaves of it.
+    auto picture = area_->picture();
+    if (!picture) return fail(picture.error());
+    const QString chosen = QFileDialog::getSaveFileName(this, "Save the picture", QString("soterrain.png"),
+                                                        "Pictures (*.png *.jpg *.tif *.ppm);;All files (*)");
+    area_->takeFocus();
+    if (chosen.isEmpty()) return;
+    const std::string path = bytes(QFileInfo(chosen).suffix().isEmpty() ? chosen + ".png" : chosen);
+    if (auto problem = writeImage(path, picture.value())) return fail(*problem);
+    area_->say("saved " + nameOf(path));
+}
+
+void MainWindow::writePicture(const std::string& path) {
+    auto picture = area_->picture();
+    if (!picture) return fail(picture.error());
+    if (auto problem = writeImage(path, picture.value())) return fail(*problem);
+    area_->say("saved " + path);
+}
+
 void MainWindow::fillRecentFiles() {
     recent_->clear();
     for (const RecentFile& file : settings_.recentFiles()) {
@@ -218,7 +265,7 @@ void MainWindow::fillRecentFiles() {
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-    if (canOpen() && !localFiles(*event->mimeData()).empty()) event->acceptProposedAction();
+    if (canOpen() && !isBusy_ && !localFiles(*event->mimeData()).empty()) event->acceptProposedAction();
 }
 
 // The dialogs that may follow must not keep the other program waiting.

@@ -15,6 +15,7 @@
 #include <Inventor/nodes/SoQuadMesh.h>
 #include <SoTerrain/SoTerrainShape.h>
 
+#include "ImageFile.h"
 #include "Texture.h"
 
 namespace app {
@@ -202,12 +203,13 @@ terrain::Result<std::unique_ptr<ErrorMeter>> Scene::makeErrorMeter() {
 }
 
 // White under a texture, which the light then shows in its own colours; the colour of earth without one.
-std::optional<terrain::Error> Scene::setTexture(const std::string& path) {
+std::optional<terrain::Error> Scene::setTexture(const std::string& path, const Errand& errand) {
     NodePtr<SoTexture2> texture;
     if (!path.empty()) {
-        auto loaded = loadTexture(path);
-        if (!loaded) return loaded.error();
-        texture = NodePtr(loaded.value());
+        terrain::Result<terrain::Image> read = terrain::Image{};
+        errand("Reading " + path, [&](terrain::ReadProgress&) { read = readImage(path); });
+        if (!read) return read.error();
+        texture = NodePtr(makeTexture(std::move(read).value()));
     }
     if (texture_) root_->removeChild(texture_.get());
     if (texture) root_->insertChild(texture.get(), root_->findChild(material_) + 1);

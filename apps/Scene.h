@@ -16,6 +16,7 @@
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoTexture2.h>
 
+#include "Errand.h"
 #include "Flight.h"
 #include "MeasureError.h"
 #include "NodePtr.h"
@@ -32,6 +33,9 @@ namespace app {
 /// The path to the first node that an SoSearchAction with these settings finds, inside of node kits too; null without one.
 NodePtr<SoPath> findNode(SoNode& root, const std::function<void(SoSearchAction&)>& wanted);
 
+/// All nodes of a type, inside of node kits too.
+std::vector<SoNode*> findNodes(SoNode& root, SoType type);
+
 /// Sky behind every terrain.
 constexpr float skyColor[3] = {0.45f, 0.6f, 0.85f};
 
@@ -39,8 +43,9 @@ constexpr float skyColor[3] = {0.45f, 0.6f, 0.85f};
 class Scene {
 public:
     /// Error: a file that can't be read, an algorithm that this build lacks, a map too large for Coin's own shapes.
-    /// `tells`: options without effect are told on standard error.
-    static terrain::Result<Scene> build(const Options& options, bool tells = true);
+    /// `tells`: options without effect are told on standard error. `errand` reads the files, which may be cancelled: then the error
+    /// is one too.
+    static terrain::Result<Scene> build(const Options& options, bool tells = true, const Errand& errand = runHere);
     /// Nothing but an invitation to open a file.
     static Scene empty();
 
@@ -100,7 +105,7 @@ public:
     terrain::Result<std::unique_ptr<ErrorMeter>> makeErrorMeter();
 
     /// Lays another picture over a height map, or none where the path is empty. Error: it can't be read, and nothing changes.
-    std::optional<terrain::Error> setTexture(const std::string& path);
+    std::optional<terrain::Error> setTexture(const std::string& path, const Errand& errand = runHere);
     void setWireframe(bool on);
     bool wireframe() const;
 

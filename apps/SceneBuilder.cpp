@@ -14,6 +14,7 @@
 #include <SoTerrain/SoTerrainShape.h>
 
 #include "DebugViews.h"
+#include "HeightMapReading.h"
 #include "Scene.h"
 
 namespace app {
@@ -33,23 +34,26 @@ bool waitsForTiles(const Options& options) {
 /// Builds one scene; each step returns what went wrong, if anything did.
 class SceneBuilder {
 public:
-    SceneBuilder(const Options& options, bool tells) : options_(options), tells_(tells) {}
+    SceneBuilder(const Options& options, bool tells, const Errand& errand) : options_(options), tells_(tells), errand_(errand) {}
 
     std::optional<Error> fromHeightMap();
     std::optional<Error> fromFile();
     Scene take() { return std::move(scene_); }
 
 private:
+    Result<std::shared_ptr<const terrain::HeightSource>> read(const std::string& path, terrain::HeightFileOptions how);
     void addRoot();
     void addCamera();
     NodePtr<SoPath> find(SoType type) const;
     void chooseTerrain();
-    std::optional<Error> checkHeightMaps() const;
+    std::optional<Error> readHeightMaps();
     void readGridOfScene();
     void placeSceneCamera();
 
     const Options& options_;
     bool tells_;
+    const Errand& errand_;
+    bool isCancelled_ = false;
     Scene scene_;
 };
 
@@ -79,9 +83,12 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     how.channel = options_.channel.value_or(how.channel);
     how.rawSize = options_.rawSize.value_or(how.rawSize);
     how.rawType = options_.rawType.value_or(how.rawType);
-    auto source = terrain::openHeightFile(options_.heightMap, how);
-    if (!source) return source.error();
-    auto grid = placeGrid(std::move(source).value(), options_.spacing, options_.heightScale);
+    Result<TerrainGrid> grid = Error{options_.heightMap, "a height map", "nothing"};
+    errand_("Reading " + options_.heightMap, [&](terrain::ReadProgress& progress) {
+        how.progress = &progress;
+        auto source = terrain::openHeightFile(options_.heightMap, how);
+        grid = source ? placeGrid(std::move(source).value(), options_.spacing, options_.heightScale) : source.error();
+    });
     if (!grid) return grid.error();
     scene_.grid_ = std::move(grid).value();
     scene_.box_.extendBy(SbVec3f(0.0f, 0.0f, float(scene_.grid_->minimum)));
@@ -91,7 +98,7 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
     addCamera();
     scene_.material_ = new SoMaterial;
     scene_.root_->addChild(scene_.material_);
-    if (auto problem = scene_.setTexture(options_.texture)) return problem;
+    if (auto problem = scene_.setTexture(options_.texture, errand_)) return problem;
     const Algorithm& algorithm = options_.algorithm ? *options_.algorithm : *findAlgorithm("roam");
     if (auto problem = scene_.putTerrain(algorithm, options_)) return problem;
     scene_.setFields(options_, tells_);
@@ -113,45 +120,46 @@ void SceneBuilder::chooseTerrain() {
     scene_.algorithm_ = scene_.terrain_->getTypeId().getName().getString();
 }
 
-// The nodes have told what is wrong with the file; the program must not go on with a scene that lacks its terrain.
-std::optional<Error> SceneBuilder::checkHeightMaps() const {
-    SoSearchAction search;
-    search.setType(SoHeightMap::getClassTypeId());
-    search.setInterest(SoSearchAction::ALL);
-    search.apply(scene_.root_.get());
-    const SoPathList& found = search.getPaths();
-    for (int i = 0; i < found.getLength(); ++i) {
-        auto* map = static_cast<SoHeightMap*>(static_cast<SoFullPath*>(found[i])->getTail());
-        const SbString& name = map->filename.getValue();
-        if (name.getLength() > 0 && !map->isLoaded()) {
-            return Error{options_.scene, "height maps that can be read", std::string(name.getString()) + ", which cannot"};
+Result<std::shared_ptr<const terrain::HeightSource>> SceneBuilder::read(const std::string& path, terrain::HeightFileOptions how) {
+    Result<std::shared_ptr<const terrain::HeightSource>> source = Error{path, "a height map", "nothing"};
+    errand_("Reading " + path, [&](terrain::ReadProgress& progress) {
+        how.progress = &progress;
+        source = terrain::openHeightFile(path, how);
+        isCancelled_ = isCancelled_ || progress.isCancelled;
+    });
+    return source;
+}
+
+// The program must not go on with a scene that lacks its terrain; its nodes have told what is wrong with their files.
+std::optional<Error> SceneBuilder::readHeightMaps() {
+    for (SoNode* node : findNodes(*scene_.root_.get(), SoHeightMap::getClassTypeId())) {
+        auto* map = static_cast<SoHeightMap*>(node);
+        const HeightMapReading::File file = HeightMapReading::file(map);
+        if (file.path.empty()) continue;
+        auto source = read(file.path, file.options);
+        if (source)
+            HeightMapReading::give(map, std::move(source).value());
+        else if (isCancelled_)
+            return source.error();
+        if (!map->isLoaded()) {
+            const std::string name = map->filename.getValue().getString();
+            return Error{options_.scene, "height maps that can be read", name + ", which cannot"};
         }
     }
     return std::nullopt;
 }
 
-// A scene whose terrain stands on a file can be measured against that file.
+// A scene whose terrain stands on a file can be measured against the node's own samples.
 void SceneBuilder::readGridOfScene() {
     const NodePtr<SoPath> path = find(SoHeightMap::getClassTypeId());
     if (!path || !scene_.terrain_) return;
     const auto* node = static_cast<SoHeightMap*>(static_cast<SoFullPath*>(path.get())->getTail());
-    const SbVec2f spacing = node->spacing.getValue(), origin = node->origin.getValue();
-    if (origin != SbVec2f(0.0f, 0.0f)) return;
-    terrain::HeightFileOptions how;
-    how.channel = node->channel.getValue();
-    how.rawSize = {node->rawSize.getValue()[0], node->rawSize.getValue()[1]};
-    how.rawType = terrain::RawType(node->rawType.getValue());
-    if (!std::isnan(node->noData.getValue())) how.noData = node->noData.getValue();
-    auto source = terrain::openHeightFile(node->filename.getValue().getString(), how);
+    if (node->origin.getValue() != SbVec2f(0.0f, 0.0f)) return;
+    auto source = scene_.heightSource();
     if (!source) return;
-    const glm::dvec2 step = spacing[0] > 0.0f ? glm::dvec2(spacing[0], spacing[1]) : source.value()->extent().spacing;
-    auto grid = placeGrid(std::move(source).value(), step, node->heightScale.getValue());
-    if (!grid) return;
-    scene_.grid_ = std::move(grid).value();
-    const double offset = node->heightOffset.getValue();
-    scene_.grid_->heightOffset = offset;
-    scene_.grid_->minimum += offset;
-    scene_.grid_->maximum += offset;
+    const glm::dvec2 spacing = source->extent().spacing;
+    auto grid = placeGrid(std::move(source), spacing, 1.0);
+    if (grid) scene_.grid_ = std::move(grid).value();
 }
 
 // The camera of the file, or one that sees everything: from the south and above where there is a terrain, as a viewer's elsewhere.
@@ -187,20 +195,20 @@ std::optional<Error> SceneBuilder::fromFile() {
         scene_.root_->insertChild(sun, 0);
     }
     chooseTerrain();
+    if (auto problem = readHeightMaps()) return problem;
     scene_.setFields(options_, tells_);
     if (tells_) applyDebugOptions(scene_, options_);
     scene_.waitForTiles(waitsForTiles(options_));
     SoGetBoundingBoxAction bounds(SbViewportRegion(1024, 768));
     bounds.apply(scene_.root_.get());
     scene_.box_ = bounds.getBoundingBox();
-    if (auto problem = checkHeightMaps()) return problem;
     readGridOfScene();
     placeSceneCamera();
     return std::nullopt;
 }
 
-Result<Scene> Scene::build(const Options& options, bool tells) {
-    SceneBuilder builder(options, tells);
+Result<Scene> Scene::build(const Options& options, bool tells, const Errand& errand) {
+    SceneBuilder builder(options, tells, errand);
     if (auto problem = options.scene.empty() ? builder.fromHeightMap() : builder.fromFile()) return *problem;
     return builder.take();
 }

@@ -18,6 +18,7 @@
 #include <SoTerrain/SoHeightMapElement.h>
 #include <SoTerrain/SoTerrainShape.h>
 
+#include "HeightMapReading.h"
 #include "Scene.h"
 
 namespace app {
@@ -95,6 +96,18 @@ NodePtr<SoPath> findNode(SoNode& root, const std::function<void(SoSearchAction&)
     search.setInterest(SoSearchAction::FIRST);
     search.apply(&root);
     return NodePtr<SoPath>(search.getPath());
+}
+
+std::vector<SoNode*> findNodes(SoNode& root, SoType type) {
+    const InsideKits inside;
+    SoSearchAction search;
+    search.setType(type);
+    search.setInterest(SoSearchAction::ALL);
+    search.apply(&root);
+    std::vector<SoNode*> nodes;
+    for (int i = 0; i < search.getPaths().getLength(); ++i)
+        nodes.push_back(static_cast<SoFullPath*>(search.getPaths()[i])->getTail());
+    return nodes;
 }
 
 // A flag that names a field the shape does not have is said to have no effect, and the program goes on.
@@ -210,6 +223,7 @@ void Scene::addHeightMap(const Options& options) {
     if (options.channel) map->channel = *options.channel;
     if (options.rawSize) map->rawSize.setValue(options.rawSize->x, options.rawSize->y);
     if (options.rawType) map->rawType = int(*options.rawType);
+    if (grid.source) HeightMapReading::give(map, grid.source);
     heightMap_ = NodePtr<SoNode>(map);
     const int group = group_ ? root_->findChild(group_) : root_->getNumChildren();
     root_->insertChild(map, group);

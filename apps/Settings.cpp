@@ -26,6 +26,16 @@ std::string bytes(const QVariant& value) {
     return value.toString().toLocal8Bit().toStdString();
 }
 
+// The whole numbers among them, by the name of the field.
+struct Number {
+    const char* name;
+    std::optional<int> Options::*value;
+};
+constexpr Number numbers[] = {
+    {"triangleCount", &Options::triangleCount}, {"tileSize", &Options::tileSize},         {"clipmapSize", &Options::clipmapSize},
+    {"levels", &Options::clipmapLevels},        {"detailLevels", &Options::detailLevels},
+};
+
 }  // namespace
 
 std::vector<RecentFile> Settings::recentFiles() const {
@@ -80,6 +90,34 @@ QByteArray Settings::windowGeometry() const {
 
 void Settings::setWindowGeometry(const QByteArray& geometry) {
     if (active_) QSettings(organization, application).setValue("geometry", geometry);
+}
+
+void Settings::keep(const Options& options) {
+    if (!active_) return;
+    QSettings store(organization, application);
+    store.beginGroup("terrain");
+    store.remove("");
+    if (options.algorithm) store.setValue("algorithm", text(std::string(options.algorithm->name)));
+    if (options.pixelError) store.setValue("pixelError", *options.pixelError);
+    store.setValue("frustumCulling", options.frustumCulling);
+    for (const Number& number : numbers) {
+        if (const auto& value = options.*number.value) store.setValue(number.name, *value);
+    }
+}
+
+void Settings::recall(Options& options) const {
+    if (!active_) return;
+    QSettings store(organization, application);
+    store.beginGroup("terrain");
+    if (!options.algorithm) options.algorithm = findAlgorithm(bytes(store.value("algorithm")));
+    bool isNumber = false;
+    const double error = store.value("pixelError").toDouble(&isNumber);
+    if (!options.pixelError && isNumber && error >= 0.0 && error < 1000.0) options.pixelError = error;
+    options.frustumCulling = store.value("frustumCulling", true).toBool();
+    for (const Number& number : numbers) {
+        const int value = store.value(number.name).toInt(&isNumber);
+        if (!(options.*number.value) && isNumber && value >= 0) options.*number.value = value;
+    }
 }
 
 }  // namespace app

@@ -31,6 +31,11 @@ public:
     QByteArray windowGeometry() const;
     void setWindowGeometry(const QByteArray& geometry);
 
+    /// Algorithm, error and sizes of a height map.
+    void keep(const Options& options);
+    /// The same, where the options do not say.
+    void recall(Options& options) const;
+
     static constexpr int mostRecentFiles = 8;
 
 private:

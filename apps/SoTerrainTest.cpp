@@ -7,6 +7,7 @@
 
 #include "Clock.h"
 #include "CoinStart.h"
+#include "DebugViews.h"
 #include "Offscreen.h"
 #include "Options.h"
 #include "Scene.h"
@@ -43,9 +44,16 @@ int show(app::Options options) {
             return options.namesTerrain() ? fail(*problem) : refuse(app::missingTerrain());
     }
     app::startCoin();
-    if (!options.namesTerrain()) nameShippedTerrain(options);
-    auto scene = options.namesTerrain() ? app::Scene::build(options) : app::Scene::empty();
+    // Settings of the last time that don't apply to this terrain are nobody's mistake.
+    const bool tells = options.namesTerrain();
+    if (!tells) {
+        nameShippedTerrain(options);
+        app::recallSettings(options);
+    }
+    const app::Errand errand = options.offscreen ? app::runHere : app::windowErrand(options);
+    auto scene = options.namesTerrain() ? app::Scene::build(options, tells, errand) : app::Scene::empty();
     if (!scene) return fail(scene.error());
+    if (!tells) app::applyDebugOptions(scene.value(), options);
     const auto run = options.offscreen ? app::runOffscreen : app::runWindow;
     if (auto problem = run(options, scene.value(), started)) return fail(*problem);
     return EXIT_SUCCESS;

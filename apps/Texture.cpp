@@ -8,10 +8,7 @@
 
 namespace app {
 
-terrain::Result<SoTexture2*> loadTexture(const std::string& path, bool topFirst) {
-    auto read = readImage(path);
-    if (!read) return read.error();
-    terrain::Image image = std::move(read).value();
+SoTexture2* makeTexture(terrain::Image image, bool topFirst) {
     const std::size_t stride = std::size_t(image.width) * std::size_t(image.channels);
     // Inventor counts rows from the bottom.
     for (int row = 0; !topFirst && row < image.height / 2; ++row) {
@@ -21,6 +18,12 @@ terrain::Result<SoTexture2*> loadTexture(const std::string& path, bool topFirst)
     auto* texture = new SoTexture2;
     texture->image.setValue(SbVec2s(short(image.width), short(image.height)), image.channels, image.pixels.data());
     return texture;
+}
+
+terrain::Result<SoTexture2*> loadTexture(const std::string& path, bool topFirst) {
+    auto read = readImage(path);
+    if (!read) return read.error();
+    return makeTexture(std::move(read).value(), topFirst);
 }
 
 }  // namespace app

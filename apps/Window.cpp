@@ -15,7 +15,9 @@
 
 #include "Clock.h"
 #include "MainWindow.h"
+#include "ProgressWindow.h"
 #include "RunLog.h"
+#include "Settings.h"
 
 namespace app {
 
@@ -55,6 +57,17 @@ std::optional<Error> openDisplay(const char* program) {
     return SoQt::init(program) ? std::nullopt : std::optional(Error{noDisplay, "", ""});
 }
 
+Errand windowErrand(const Options& options) {
+    if (options.isMeasured()) return runHere;
+    return [](const std::string& what, const std::function<void(terrain::ReadProgress&)>& work) {
+        runBehindProgress(nullptr, what, work);
+    };
+}
+
+void recallSettings(Options& options) {
+    Settings(!options.isMeasured() && !options.noSettings).recall(options);
+}
+
 std::optional<Error> runWindow(const Options& options, Scene& scene, double startedMs) {
     auto animation = Animation::make(options, scene);
     if (!animation) return animation.error();
@@ -79,6 +92,12 @@ namespace app {
 std::optional<terrain::Error> openDisplay(const char*) {
     return terrain::Error{"window", "--offscreen", "a build without SoQt"};
 }
+
+Errand windowErrand(const Options&) {
+    return runHere;
+}
+
+void recallSettings(Options&) {}
 
 std::optional<terrain::Error> runWindow(const Options&, Scene&, double) {
     return openDisplay("");

@@ -133,10 +133,14 @@
 
 #include "FieldsInUse.h"
 #include "FindFile.h"
+#include "HeightMapReading.h"
 #include "height/HeightScale.h"
 #include "height/MapSource.h"
 
 namespace {
+
+// Far below what a pixel shows: what rescaling may lose, in parts of the range of heights.
+constexpr double kMostLost = 0x1p-17;
 
 /// A map with all the nodes that have it: copies of one another.
 struct SharedMap {
@@ -185,7 +189,10 @@ public:
     /// Whether the map has the heights of another scale now, without its file.
     bool rescale(const terrain::HeightScale & to);
     std::optional<terrain::Error> whyNot(const Rect & rect, const void * heights) const;
+    /// The given map in the scale of the reading; null where there is none, or not without rounding.
+    std::shared_ptr<terrain::MapSource> takeGiven();
 
+    std::shared_ptr<const terrain::HeightSource> given;  ///< the file's samples without a scale, for the next reading
     std::shared_ptr<SharedMap> map;
     Reading reading;           ///< of the map's file
     bool isChanged = true;     ///< a field changed since they were last looked at
@@ -299,29 +306,61 @@ void SoHeightMap::load()
 {
     pimpl->isStale = false;
     pimpl->hasFailed = false;
-    if (pimpl->path.getLength() == 0) pimpl->path = findFile(this->filename.getValue());
-    terrain::HeightFileOptions options;
-    options.channel = pimpl->reading.channel;
-    options.rawSize = {pimpl->reading.rawSize[0], pimpl->reading.rawSize[1]};
-    options.rawType = terrain::RawType(pimpl->reading.rawType);
-    options.heightScale = pimpl->reading.scale.scale;
-    options.heightOffset = pimpl->reading.scale.offset;
-    if (!std::isnan(pimpl->reading.noData)) options.noData = pimpl->reading.noData;
-    auto map = terrain::readHeightFile(pimpl->path.getString(), options);
-    pimpl->hasFailed = !map;
-    if (!map) {
-        // The last good heights stay on screen.
-        warn("SoHeightMap", map.error());
-        return;
+    std::shared_ptr<terrain::MapSource> source = pimpl->takeGiven();
+    if (!source) {
+        const HeightMapReading::File file = HeightMapReading::file(this);
+        terrain::HeightFileOptions options = file.options;
+        options.heightScale = pimpl->reading.scale.scale;
+        options.heightOffset = pimpl->reading.scale.offset;
+        auto map = terrain::readHeightFile(file.path, options);
+        pimpl->hasFailed = !map;
+        if (!map) {
+            // The last good heights stay on screen.
+            warn("SoHeightMap", map.error());
+            return;
+        }
+        source = std::make_shared<terrain::MapSource>(std::move(map).value());
     }
-    const glm::dvec2 spacing = map.value().spacing;
+    const terrain::HeightMap & map = *source->map();
+    const glm::dvec2 spacing = map.spacing;
     const SbVec2f step = this->spacing.getValue(), start = this->origin.getValue();
-    if (step != SbVec2f(0.0f, 0.0f)) map.value().spacing = glm::dvec2(step[0], step[1]);
-    map.value().origin = glm::dvec2(start[0], start[1]);
-    pimpl->map = std::make_shared<SharedMap>(SharedMap{std::make_shared<terrain::MapSource>(std::move(map).value()), spacing});
+    source->place(glm::dvec2(start[0], start[1]), step == SbVec2f(0.0f, 0.0f) ? spacing : glm::dvec2(step[0], step[1]));
+    pimpl->map = std::make_shared<SharedMap>(SharedMap{std::move(source), spacing});
     pimpl->isFromFile = true;
     pimpl->isEdited = false;
     pimpl->lost = 0.0;
+}
+
+HeightMapReading::File HeightMapReading::file(SoHeightMap * map)
+{
+    SoHeightMap::Private & own = *map->pimpl;
+    File file;
+    if (map->filename.getValue().getLength() == 0) return file;
+    if (own.path.getLength() == 0) own.path = findFile(map->filename.getValue());
+    file.path = own.path.getString();
+    file.options.channel = map->channel.getValue();
+    file.options.rawSize = {map->rawSize.getValue()[0], map->rawSize.getValue()[1]};
+    file.options.rawType = terrain::RawType(map->rawType.getValue());
+    if (!std::isnan(map->noData.getValue())) file.options.noData = map->noData.getValue();
+    return file;
+}
+
+void HeightMapReading::give(SoHeightMap * map, std::shared_ptr<const terrain::HeightSource> source)
+{
+    map->pimpl->given = std::move(source);
+}
+
+std::shared_ptr<terrain::MapSource> SoHeightMap::Private::takeGiven()
+{
+    const std::shared_ptr<const terrain::HeightSource> source = std::move(given);
+    given.reset();
+    const terrain::MapSource * unscaled = source ? source->editable() : nullptr;
+    if (!unscaled) return nullptr;
+    const terrain::HeightRange range(*unscaled->map());
+    const terrain::HeightScale none;
+    if (!none.leadsTo(reading.scale, range) || range.rounding() > kMostLost) return nullptr;
+    auto scaled = terrain::rescaled(*unscaled, none, reading.scale);
+    return scaled ? std::move(scaled).value() : nullptr;
 }
 
 bool SoHeightMap::Private::rescale(const terrain::HeightScale & to)
@@ -331,8 +370,7 @@ bool SoHeightMap::Private::rescale(const terrain::HeightScale & to)
     if (!map || hasFailed) return false;
     const terrain::HeightRange range(*map->source->map());
     if (!from.leadsTo(to, range)) return false;
-    // Far below what a pixel shows. Where the file is not all there is, edits count for more.
-    constexpr double kMostLost = 0x1p-17;
+    // Where the file is not all there is, edits count for more.
     lost += range.rounding();
     if (!isEdited && lost > kMostLost) return false;
     auto scaled = terrain::rescaled(*map->source, from, to);

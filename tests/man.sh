@@ -15,7 +15,7 @@ in_help() { grep -oE '(^|[ ,[])--?[A-Za-z][a-z-]*' | tr -d ' ,[' | sort -u; }
 in_page() { grep -E '^\.It Fl' "$1" | grep -oE 'Fl -?[A-Za-z][a-z-]*' | sed 's/Fl /-/' | sort -u; }
 
 for program in SoTerrainTest soterrain-bench soterrain-generate soterrain-report soterrain-run; do
-    "$BUILD/$program" --help | grep -vE '^Keys|^  (W S|Keypad|Enter|\]|Left|Ctrl|1 to|F5)' | in_help >"$SCRATCH/help"
+    "$BUILD/$program" --help | grep -vE '^Keys|^  (W S|Keypad|Enter|\]|Left|Ctrl|1 to|F5|F12)' | in_help >"$SCRATCH/help"
     in_page "$manuals/$program.1" >"$SCRATCH/page"
     diff "$SCRATCH/help" "$SCRATCH/page" >"$SCRATCH/differences" || { fail "$program: --help (<) and manual (>) differ"; cat "$SCRATCH/differences"; }
     [ -s "$SCRATCH/page" ] || fail "$program: no option in the manual"

@@ -45,6 +45,7 @@ Result<HeightMapBuilder> HeightMapBuilder::create(const std::string& path, std::
     } else {
         builder.map_.heights.reserve(std::size_t(count));
     }
+    builder.progress_ = options.progress;
     builder.heightScale_ = options.heightScale;
     builder.heightOffset_ = options.heightOffset;
     if (options.noData) builder.noData_.push_back(*options.noData);
@@ -78,7 +79,13 @@ bool HeightMapBuilder::appendRow(const double* samples) {
         for (const float height : row_) map_.heights.push_back(height);
     else if (!problem_)
         problem_ = scratch_->write(std::uint64_t(missingRows_) * row_.size(), row_.data(), row_.size());
+    if (progress_) tellProgress();
     return !problem_;
+}
+
+void HeightMapBuilder::tellProgress() {
+    progress_->part = 1.0f - float(missingRows_) / float(map_.rows);
+    if (progress_->isCancelled && !problem_) problem_ = Error{"height map", "to be read to its end", "that it was cancelled"};
 }
 
 Result<HeightMap> HeightMapBuilder::finish() && {

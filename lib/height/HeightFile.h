@@ -31,7 +31,7 @@ public:
     /// Samples of a floating-point file equal a no-data value when they do so as floats: -9999.9 has no exact double.
     void setFloatingPoint(bool floatingPoint) { floatingPoint_ = floatingPoint; }
 
-    /// `samples`: as many as there are columns. False when there is no space for them: finish() says why.
+    /// `samples`: as many as there are columns. False when there is no space for them, or reading was cancelled: finish() says why.
     bool appendRow(const double* samples);
     /// The map, rows turned so that the first one is the southernmost, once every row has been appended.
     Result<HeightMap> finish() &&;
@@ -39,8 +39,10 @@ public:
 private:
     HeightMapBuilder() = default;
     bool isHole(double sample) const;
+    void tellProgress();
 
     HeightMap map_;
+    ReadProgress* progress_ = nullptr;
     std::optional<ScratchWriter> scratch_;
     std::optional<Error> problem_;
     int missingRows_ = 0;

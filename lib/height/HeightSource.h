@@ -1,6 +1,7 @@
 // Where heights come from: one interface over memory, images, rasters, raw files and procedures.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -67,6 +68,12 @@ public:
 /// Pixel type of a headerless file.
 enum class RawType { UInt8, UInt16LittleEndian, UInt16BigEndian };
 
+/// How far the reading of a file is, and whether it is to stop. For the reader and for who waits for it, in any threads.
+struct ReadProgress {
+    std::atomic<float> part{-1.0f};        ///< of the rows, 0 to 1; below 0 while that is unknown
+    std::atomic<bool> isCancelled{false};  ///< an Error follows soon
+};
+
 /// How a file is to be read. Fields that do not apply to a kind of file are ignored by it.
 struct HeightFileOptions {
     int channel = -1;          ///< -1: the only channel (a file with three or more channels is an error); else its index
@@ -82,6 +89,7 @@ struct HeightFileOptions {
     std::uint64_t samplesInMemory = std::uint64_t(1) << 26;
     /// A file that holds, or only promises, more samples than these is an error: 64 GiB of heights, or less for who is in a hurry.
     std::uint64_t maximumSamples = std::uint64_t(1) << 34;
+    ReadProgress* progress = nullptr;  ///< told of every row; outlives the call
 };
 
 /// Opens any file this build can read: ".raw" by rawSize and rawType, GDAL's georeferenced rasters, images by OpenImageIO.

@@ -66,6 +66,7 @@ protected:
     virtual void notify(SoNotList * list);
 
 private:
+    friend class HeightMapReading;
     void bringUpToDate();
     void load();
     void tellOfEdit();

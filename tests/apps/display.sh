@@ -1,5 +1,5 @@
 # What the tests of windows share, after common.sh: a display of their own, windows, keys and pictures of them. SCREEN may ask for a size.
-for tool in Xvfb xdotool import; do command -v $tool >/dev/null || skip "$tool is missing"; done
+for tool in Xvfb xdotool import convert; do command -v $tool >/dev/null || skip "$tool is missing"; done
 unset WAYLAND_DISPLAY QT_QPA_PLATFORM EGL_PLATFORM
 export XDG_RUNTIME_DIR=$SCRATCH XDG_CONFIG_HOME=$SCRATCH/config
 chmod 700 "$SCRATCH"
@@ -77,7 +77,8 @@ says() {
 
 shot() {
     sleep 1
-    import -silent -depth 8 -window root "$SCRATCH/$1.ppm"
+    import -silent -window root "$SCRATCH/$1.png"
+    convert "$SCRATCH/$1.png" -depth 8 "$SCRATCH/$1.ppm"
 }
 
 # moved A B: the two screens differ by more than the status line

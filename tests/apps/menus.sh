@@ -120,12 +120,60 @@ xdotool key alt+a key End
 says '^SoTerrainTest: quadmesh' || fail "the dialog does not exchange the algorithm: $(title)"
 xdotool key alt+a key Home
 says '^SoTerrainTest: bruteforce .*of 7.50 px' || fail "the dialog does not exchange the algorithm back: $(title)"
-xdotool key alt+r 2>/dev/null
 xdotool key Escape
 sleep 0.3
+close_window
+
+# Pictures have the window's pixels, and no text; none takes the place of another.
+program_path=$(realpath "$TEST")
+TEST=$program_path
+mkdir "$SCRATCH/pictures"
+cd "$SCRATCH/pictures" || exit 99
+open_window -h "$SCRATCH/map.raw" -f --no-settings
+says 'px'
+shot screen
+xdotool key F12
+says 'saved soterrain-0001' || fail "F12 saves no picture: $(title)"
+xdotool key F12
+says 'saved soterrain-0002' || fail "F12 saves no second picture: $(title)"
+xdotool key ctrl+s
+find_dialog '^Save the picture$'
+xdotool key ctrl+a
+xdotool type --delay 5 "$SCRATCH/pictures/mine.ppm"
+sleep 0.3
+xdotool key Return
+sleep 0.5
 xdotool windowfocus "$window"
+says 'saved mine.ppm' || fail "Ctrl+S saves no picture: $(title)"
+head -c 15 mine.ppm | tr '\n' ' ' | grep -q '^P6 1100 800 255' || fail "a picture of another size: $(head -c 15 mine.ppm)"
+[ "$(find . -name 'soterrain-*' | wc -l)" = 2 ] || fail "other pictures than two: $(ls)"
+tail -c 2640000 mine.ppm >"$SCRATCH/mine.ppm"
+tail -c 2640000 "$SCRATCH/screen.ppm" >"$SCRATCH/seen.ppm"
+same seen mine || fail "the picture is not what is seen"
+[ "$(tail -c 200000 mine.ppm | od -An -v -t u1 -w3 | grep -c '255 255 255')" = 0 ] || fail "there is text in the picture"
+[ "$(tail -c 200000 "$SCRATCH/screen.ppm" | od -An -v -t u1 -w3 | grep -c '255 255 255')" -gt 50 ] || fail "there is no text on the screen"
+close_window
+cd - >/dev/null || exit 99
+
+# What was set is set the next time, unless files are named.
+open_window
+xdotool key ctrl+o
+choose '^Open a terrain$' "$SCRATCH/map.raw"
+says 'of 2.00 px' || fail "another pixel error than 2 at first: $(title)"
+xdotool key plus
+says 'of 2.50 px'
+close_window
+open_window
+xdotool key ctrl+o
+choose '^Open a terrain$' "$SCRATCH/map.raw"
+says 'of 2.50 px' || fail "the pixel error is forgotten: $(title)"
+close_window
+open_window -h "$SCRATCH/map.raw"
+says 'of 2.00 px' || fail "the command line does not say all: $(title)"
+close_window
 
 # A headerless file that is no square is asked about.
+open_window -h "$SCRATCH/map.raw" -a bruteforce --no-settings
 xdotool key ctrl+o
 choose '^Open a terrain$' "$SCRATCH/oblong.raw"
 find_dialog '^Size of a headerless file$'

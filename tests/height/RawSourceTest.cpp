@@ -148,3 +148,21 @@ TEST_F(RawSource, OptionsThatAreNoNumbersAreErrors) {
     options.origin = glm::dvec2(nan, 0.0);
     EXPECT_NE(problemOf(path, options), "no error");
 }
+
+TEST_F(RawSource, ProgressGoesFromNothingToAllAndACancelledReadingIsAnError) {
+    const std::string path = write(std::string(64 * 64, 'a'));
+    ReadProgress progress;
+    HeightFileOptions options;
+    options.progress = &progress;
+    EXPECT_LT(progress.part, 0.0f);
+    EXPECT_TRUE(openHeightFile(path, options));
+    EXPECT_EQ(progress.part, 1.0f);
+
+    ReadProgress cancelled;
+    cancelled.isCancelled = true;
+    options.progress = &cancelled;
+    const auto source = openHeightFile(path, options);
+    ASSERT_FALSE(source);
+    EXPECT_NE(source.error().message().find("cancelled"), std::string::npos) << source.error().message();
+    EXPECT_LT(cancelled.part, 0.1f) << "it went on after it was cancelled";
+}

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include <Inventor/SoDB.h>
@@ -14,6 +15,8 @@
 #include <Inventor/actions/SoSearchAction.h>
 #include <Inventor/actions/SoWriteAction.h>
 #include <Inventor/nodes/SoSphere.h>
+
+#include "HeightMapReading.h"
 
 #include <SoTerrain/SoHeightMap.h>
 #include <SoTerrain/SoROAMTerrain.h>
@@ -69,7 +72,9 @@ Ref<SoSeparator> read(const std::string& text) {
     return Ref<SoSeparator>(SoDB::readAll(&input));
 }
 
-void* reallocate(void* pointer, std::size_t size) { return std::realloc(pointer, size); }
+void* reallocate(void* pointer, std::size_t size) {
+    return std::realloc(pointer, size);
+}
 
 std::string write(SoNode* root, bool binary = false) {
     SoOutput output;
@@ -188,7 +193,8 @@ TEST(HeightMapFields, WithAPartOfTheMapDrawThatPart) {
 
 TEST(HeightMaps, LookLikeTheirSamples) {
     const TemporaryFolder folder;
-    const auto map = mapOf(129, 97, [](double x, double y) { return std::floor(40.0 + 30.0 * std::sin(7.0 * x) * std::cos(5.0 * y)); });
+    const auto map =
+        mapOf(129, 97, [](double x, double y) { return std::floor(40.0 + 30.0 * std::sin(7.0 * x) * std::cos(5.0 * y)); });
     std::vector<std::uint8_t> bytes;
     for (int row = 96; row >= 0; --row)
         for (int column = 0; column < 129; ++column) bytes.push_back(std::uint8_t(map.at(column, row)));
@@ -213,7 +219,8 @@ TEST(HeightMaps, LookLikeTheirSamples) {
 TEST(HeightMaps, OfRelativeNameAreFoundBesideTheSceneFile) {
     const TemporaryFolder folder;
     numbered(folder, 5, 5);
-    std::ofstream(folder.file("scene.iv")) << "#Inventor V2.1 ascii\nSeparator { SoHeightMap { filename \"map.raw\" } SoROAMTerrain {} }\n";
+    std::ofstream(folder.file("scene.iv"))
+        << "#Inventor V2.1 ascii\nSeparator { SoHeightMap { filename \"map.raw\" } SoROAMTerrain {} }\n";
     SoInput input;
     ASSERT_TRUE(input.openFile(folder.file("scene.iv").c_str()));
     const Ref<SoSeparator> root(SoDB::readAll(&input));
@@ -296,4 +303,34 @@ TEST(SceneFiles, CopiedNodesKeepTheirFields) {
     const Ref<SoSeparator> copy(static_cast<SoSeparator*>(first->copy()));
     EXPECT_EQ(find<SoHeightMap>(copy.get())->filename.getValue(), SbString("somewhere/terrain.raw"));
     EXPECT_EQ(find<SoROAMTerrain>(copy.get())->triangleCount.getValue(), 1234);
+}
+
+// A file that is gone can't be read a second time.
+TEST(HeightMap, WhatWasReadAlreadyTakesThePlaceOfTheFile) {
+    const TemporaryFolder folder;
+    const std::string file = numbered(folder, 9, 7);
+    const MapScene expected(file);
+    expected.map->heightScale = 0.3f;
+    expected.map->heightOffset = -4.0f;
+    expected.map->rawSize.setValue(9, 7);
+    const MapScene scene(file);
+    scene.map->rawSize.setValue(9, 7);
+    scene.map->heightScale = 0.3f;
+    scene.map->heightOffset = -4.0f;
+    const HeightMapReading::File named = HeightMapReading::file(scene.map);
+    EXPECT_EQ(named.path, file);
+    auto source = terrain::openHeightFile(named.path, named.options);
+    ASSERT_TRUE(source) << source.error().message();
+    std::vector<float> wanted(63), found(63);
+    ASSERT_TRUE(expected.map->getHeights(0, 0, 9, 7, wanted.data()));
+    std::filesystem::remove(file);
+    HeightMapReading::give(scene.map, std::move(source).value());
+    ASSERT_TRUE(scene.map->isLoaded());
+    ASSERT_TRUE(scene.map->getHeights(0, 0, 9, 7, found.data()));
+    EXPECT_EQ(found, wanted) << "bit for bit as the file gives them";
+    // Only once: the file may have changed after that.
+    const Messages messages;
+    scene.map->touch();
+    EXPECT_FALSE(scene.map->isLoaded());
+    EXPECT_EQ(messages.all().size(), 1u) << messages.text();
 }
