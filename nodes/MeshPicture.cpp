@@ -335,6 +335,8 @@ void drawViewVolume(const terrain::View & view)
     const PlainState plain;
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     glLineWidth(2.0f);
+    // Who looks at depth looks for the terrain.
+    glDepthMask(GL_FALSE);
     glColor3f(1.0f, 0.9f, 0.1f);
     glEnableClientState(GL_VERTEX_ARRAY);
     glVertexPointer(3, GL_FLOAT, 0, corner.data());

@@ -163,6 +163,12 @@ bool isMirrored(const terrain::SampleGrid & grid)
 {
     return glm::determinant(grid.localFromFrame()) < 0.0;
 }
+/// Whether what is drawn is what a light sees, to find shadows.
+bool isShadowMap(SoState * state)
+{
+    return (SoShapeStyleElement::get(state)->getFlags() & SoShapeStyleElement::SHADOWMAP) != 0;
+}
+
 }  // namespace
 
 SoTerrainShape::Private::Private(SoTerrainShape * masterArg)
@@ -357,8 +363,7 @@ void SoTerrainShape::Private::renderMesh(const TerrainFrame & frame)
 
 bool SoTerrainShape::Private::wantsDebug(SoState * state) const
 {
-    if (master->debugView.getValue() == NONE && !master->wireframeOverlay.getValue()) return false;
-    return (SoShapeStyleElement::get(state)->getFlags() & SoShapeStyleElement::SHADOWMAP) == 0;
+    return (master->debugView.getValue() != NONE || master->wireframeOverlay.getValue()) && !isShadowMap(state);
 }
 
 void SoTerrainShape::Private::renderDebug(const TerrainFrame & frame, bool isSelection)
@@ -426,7 +431,7 @@ void SoTerrainShape::Private::render(SoGLRenderAction * action)
     if (!debugs && view.debug) TerrainViews::discardDebug(view);
     // Of what is drawn by programs of the node's own the triangles are known as a mesh only.
     if (debugs || !master->renderOwn(frame, statistics)) renderMesh(frame);
-    if (master->freeze.getValue() && master->frozenFrustum.getValue()) drawViewVolume(*view.chosenFor);
+    if (master->freeze.getValue() && master->frozenFrustum.getValue() && !isShadowMap(state)) drawViewVolume(*view.chosenFor);
 
     statistics.converged = view.report.converged && texture.converged;
     statistics.uploadedBytes += texture.uploadedBytes;

@@ -83,8 +83,10 @@ TEST_P(DebugProperties, KeepAFrozenMeshThatWasChosenWithoutThem) {
         node->debugView = SoTerrainShape::LEVELS;
         node->frozenFrustum = TRUE;
         pictures.push_back(stage.render(root.get()));
+        const std::vector<float> depth = stage.depth();
         node->frozenFrustum = FALSE;
         EXPECT_NE(stage.render(root.get()).pixels, pictures.back().pixels) << "no view volume";
+        EXPECT_EQ(stage.depth(), depth) << "lines are no ground";
     }
     EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
     savePicture("debug_frozen_" + identifierOf(GetParam()), pictures);
