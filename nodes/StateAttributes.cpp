@@ -122,8 +122,28 @@ int StateAttributes::boundIndex(Binding binding, int column, int row, int count)
     return int(std::min(index, std::size_t(std::max(count - 1, 0))));
 }
 
+/// The slopes are those between the valid neighbours on both sides; none where there is no neighbour.
+SbVec3f StateAttributes::regularNormal(int column, int row) const
+{
+    const auto isValid = [this](int c, int r) { return grid_.contains(c, r) && std::isfinite(grid_.height(c, r)); };
+    const int left = isValid(column - 1, row) ? column - 1 : column, right = isValid(column + 1, row) ? column + 1 : column;
+    const int below = isValid(column, row - 1) ? row - 1 : row, above = isValid(column, row + 1) ? row + 1 : row;
+    const glm::dmat4 & local = grid_.localFromFrame();
+    const int up = grid_.heightAxis(), along = local[0][(up + 1) % 3] != 0.0 ? (up + 1) % 3 : (up + 2) % 3, across = 3 - up - along;
+    double slopes[2] = {0.0, 0.0};
+    if (right > left) slopes[0] = double(grid_.height(right, row) - grid_.height(left, row)) / (local[0][along] * (right - left));
+    if (above > below) slopes[1] = double(grid_.height(column, above) - grid_.height(column, below)) / (local[1][across] * (above - below));
+    const double factor = 1.0 / std::sqrt(1.0 + slopes[0] * slopes[0] + slopes[1] * slopes[1]);
+    SbVec3f normal;
+    normal[along] = float(-slopes[0] * factor);
+    normal[across] = float(-slopes[1] * factor);
+    normal[up] = float(factor);
+    return normal;
+}
+
 SbVec3f StateAttributes::generatedNormal(int column, int row) const
 {
+    if (grid_.isRegular()) return regularNormal(column, row);
     const glm::vec3 middle = grid_.framePosition(column, row);
     // The last valid neighbours on both sides; a missing one is replaced by the sample itself.
     const auto neighbour = [&](int dc, int dr) {

@@ -75,6 +75,7 @@ private:
     bool isEnough(const char * what, Binding binding, long found, const char * remedy);
     int boundIndex(Binding binding, int column, int row, int count) const;
     SbVec3f generatedNormal(int column, int row) const;
+    SbVec3f regularNormal(int column, int row) const;
     void writeCoordinate(int unit, const SbVec4f & coordinate, std::uint8_t *& out) const;
     void writeColour(int column, int row, std::uint8_t * out) const;
     void mix(std::uint64_t value) { version_ = (version_ ^ value) * 0x100000001b3ull; }
