@@ -53,7 +53,7 @@ std::vector<Command> makeCommands() {
         line(Menu::View),
         {"wireframe", Menu::View, "&Wireframe", "L", "Show the edges of the triangles alone",
          [](W& w) { w.scene().setWireframe(!w.scene().wireframe()); }, [](const W& w) { return w.scene().wireframe(); }},
-        {"meters", Menu::View, "&Meters", "M", "Show graphs of what frames take: times, triangles, frames in a second, memory",
+        {"meters", Menu::View, "&Meters", "G", "Show graphs of what frames take: times, triangles, frames in a second, memory",
          [](W& w) { w.area().toggleMeters(); }, [](const W& w) { return w.area().showsMeters(); }},
         line(Menu::View),
         {"home", Menu::View, "Camera &home", "Tab", "Put the camera where it was at the start", [](W& w) { w.area().goHome(); }},

@@ -80,7 +80,7 @@ Keys (the window's menus offer the same, and more)
   Enter  detail on or off         Tab  camera home        R  record, stop      P  play the record, stop
   Shift+P  play it five times, and write means
   ] [  one level finer, coarser (clipmap)                 0  as many levels as the view needs (clipmap)
-  M  graphs of what frames take
+  G  graphs of what frames take
   F5 terrain   F6 tiles   F7 levels of detail   F8 errors   F9 loading   O  edges over it   Z  freeze the mesh, go on
   K  clicks show height and slope (Ctrl+click: always)    M  clicks measure a line
   N  clicks place markers         Ctrl+P  height profile of the line               Del  forget all of these

@@ -48,10 +48,10 @@ xdotool key o
 shot edges
 moved terrain edges || fail "O shows no edges"
 xdotool key o
-xdotool key m
+xdotool key g
 shot meters
-moved terrain meters || fail "M shows no meters"
-xdotool key m
+moved terrain meters || fail "G shows no meters"
+xdotool key g
 xdotool key z
 says frozen || fail "Z does not freeze: $(title)"
 press s
