@@ -198,6 +198,43 @@ truncate -s 2300000 "$SCRATCH/plain.ppm" "$SCRATCH/dense.ppm"  # without the tex
 same plain dense || fail "a dense display shows another picture"
 close_window
 
+# Files that are dropped on the window: a height map, then a picture, which becomes its texture.
+# drop FILE: drags it from a window of its own, at the right edge of the screen.
+drop() {
+    "$SCRATCH/drag" "$1" 2>/dev/null &
+    local source=$!
+    for _ in $(seq 50); do xdotool search --onlyvisible --name '^drag source$' >/dev/null 2>&1 && break; sleep 0.1; done
+    sleep 0.5
+    xdotool mousemove 1060 40 mousedown 1
+    local place
+    for place in "1050 60" "800 300" "500 400" "505 405"; do
+        sleep 0.3
+        # shellcheck disable=SC2086
+        xdotool mousemove $place
+    done
+    sleep 0.5
+    xdotool mouseup 1
+    sleep 1
+    kill $source
+    wait $source 2>/dev/null
+}
+# shellcheck disable=SC2046
+if ${CXX:-g++} -fPIC -o "$SCRATCH/drag" "$SOURCE/tests/apps/drag.cpp" $(pkg-config --cflags --libs Qt5Widgets) 2>/dev/null; then
+    open_window -h "$SCRATCH/map.raw" -c --no-settings
+    cp "$SCRATCH/map.raw" "$SCRATCH/dropped.raw"
+    drop "$SCRATCH/dropped.raw"
+    says 'dropped.raw$' || fail "a dropped height map is not shown: $(title)"
+    shot plain
+    drop "$SCRATCH/colours.ppm"
+    shot coloured
+    says 'dropped.raw$' || fail "a dropped picture takes the terrain: $(title)"
+    same plain coloured && fail "a dropped picture is not the texture"
+    xdotool windowfocus "$window"
+    close_window
+else
+    echo "nothing is dropped: no compiler for Qt programs"
+fi
+
 # A run that is measured remembers nothing, nor does one without settings.
 cp "$SCRATCH/config/SoTerrain/SoTerrainTest.conf" "$SCRATCH/before"
 expect 0 timeout 60 "$TEST" -h "$SCRATCH/other map.raw" --frames 3 --stats
