@@ -2,13 +2,12 @@
 
 #include <getopt.h>
 
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <string_view>
 
 #include "DebugViews.h"
-#include "FrameName.h"
+#include "OptionChecks.h"
+#include "OptionValues.h"
 
 namespace app {
 
@@ -102,44 +101,6 @@ std::string optionName(int code) {
     }
     return std::string("-") + char(code);
 }
-
-template <class Number>
-std::optional<Number> readNumber(std::string_view text) {
-    Number value{};
-    const char* end = text.data() + text.size();
-    const auto [stop, problem] = std::from_chars(text.data(), end, value);
-    if (problem != std::errc() || stop != end) return std::nullopt;
-    if constexpr (std::is_floating_point_v<Number>) {
-        if (!std::isfinite(value)) return std::nullopt;
-    }
-    return value;
-}
-
-std::optional<glm::dvec2> readPair(std::string_view text, char separator) {
-    const std::size_t middle = text.find(separator);
-    const auto first = readNumber<double>(text.substr(0, middle));
-    const auto second = middle == text.npos ? first : readNumber<double>(text.substr(middle + 1));
-    if (!first || !second) return std::nullopt;
-    return glm::dvec2(*first, *second);
-}
-
-// Two whole numbers from lowest to highest with an x between.
-std::optional<glm::ivec2> readSize(std::string_view text, int lowest, int highest) {
-    const std::size_t middle = text.find('x');
-    if (middle == text.npos) return std::nullopt;
-    const auto width = readNumber<int>(text.substr(0, middle)), height = readNumber<int>(text.substr(middle + 1));
-    const auto fits = [&](std::optional<int> side) { return side && *side >= lowest && *side <= highest; };
-    return fits(width) && fits(height) ? std::optional(glm::ivec2(*width, *height)) : std::nullopt;
-}
-
-constexpr struct {
-    const char* name;
-    terrain::RawType type;
-} rawTypes[] = {
-    {"uint8", terrain::RawType::UInt8},
-    {"uint16le", terrain::RawType::UInt16LittleEndian},
-    {"uint16be", terrain::RawType::UInt16BigEndian},
-};
 
 // Collects what getopt finds; the first complaint is kept.
 class Reader {
@@ -383,9 +344,7 @@ void Reader::takeSize(int code, const char* value) {
 void Reader::takeRawType(const char* value) {
     options.rawType = findRawType(value);
     if (options.rawType) return;
-    std::string known;
-    for (const auto& raw : rawTypes) known += (known.empty() ? "" : ", ") + std::string(raw.name);
-    refuse("--raw-type", "one of " + known, std::string("\"") + value + "\"");
+    refuse("--raw-type", "one of " + rawTypeNames(), std::string("\"") + value + "\"");
 }
 
 void Reader::takePlaces(int code, const char* value) {
@@ -419,54 +378,7 @@ void refuseOption(Reader& reader, int code, char* const argv[]) {
         reader.refuse(std::string("-") + char(optopt), "a known option", "an unknown one");
 }
 
-void checkRepetitions(Reader& reader) {
-    const Options& o = reader.options;
-    if (!o.repeat) return;
-    if (!o.animates()) reader.refuse("--repeat", "-v, --flight or --frames with it", "none of them");
-    if (o.synchronize) reader.refuse("--repeat", "every frame of each flight", "-s, which leaves some out");
-    if (!o.output.empty() || !o.record.empty() || o.measureError)
-        reader.refuse("--repeat", "frames that are measured alone", "--output, --record or --measure-error");
-}
-
-void checkCombination(Reader& reader) {
-    const Options& o = reader.options;
-    checkRepetitions(reader);
-    if (!o.lineOut.empty() && o.profileLine.empty()) reader.refuse("--line-out", "--profile-line with it", "none");
-    if (!o.record.empty() && o.record == o.flight) reader.refuse("--record", "another file than --flight", o.record);
-    if (!o.namesTerrain() && (o.offscreen || o.isMeasured() || o.asksGround() || !o.output.empty()) && !reader.problem)
-        reader.problem = missingTerrain();
-    if (!o.heightMap.empty() && !o.scene.empty()) reader.refuse("terrain", "-h heightmap or --scene file.iv", "both");
-    if (!o.scene.empty() && (o.spacing || o.heightScale)) reader.refuse("--spacing, --height-scale", "-h heightmap", "--scene");
-    if (!o.scene.empty() && (o.channel || o.rawSize || o.rawType)) {
-        reader.refuse("--channel, --raw-size, --raw-type", "-h heightmap (a scene's SoHeightMap has fields for them)", "--scene");
-    }
-    if (!o.scene.empty() && o.algorithm) reader.refuse("-a", "-h heightmap (a scene file names its nodes itself)", "--scene");
-    if (!o.scene.empty() && !o.texture.empty())
-        reader.refuse("-t", "-h heightmap (a scene file names its textures itself)", "--scene");
-    if (o.output.empty()) return;
-    if (!o.offscreen) reader.refuse("--output", "--offscreen with it", "a window");
-    const auto problem = checkFrameName(o.output);
-    if (problem && !reader.problem) reader.problem = *problem;
-    const bool many = o.animate || !o.flight.empty() || o.frames.value_or(1) > 1;
-    if (!problem && many && !hasFrameNumber(o.output))
-        reader.refuse("--output", "a name with %d or %04d for several frames", o.output);
-}
-
 }  // namespace
-
-const char* rawTypeName(terrain::RawType type) {
-    for (const auto& raw : rawTypes) {
-        if (raw.type == type) return raw.name;
-    }
-    return "";
-}
-
-std::optional<terrain::RawType> findRawType(std::string_view name) {
-    for (const auto& raw : rawTypes) {
-        if (raw.name == name) return raw.type;
-    }
-    return std::nullopt;
-}
 
 Error missingTerrain() {
     return {"terrain", "-h heightmap or --scene file.iv", "neither"};
@@ -484,7 +396,7 @@ Result<Options> parseOptions(int argc, char* const argv[]) {
             reader.take(code, optarg);
     }
     if (!reader.problem && optind < argc) reader.refuse("command line", "options only", std::string("\"") + argv[optind] + "\"");
-    if (!reader.problem && !reader.options.help && !reader.options.version) checkCombination(reader);
+    if (!reader.problem && !reader.options.help && !reader.options.version) reader.problem = checkCombination(reader.options);
     if (reader.problem) return *reader.problem;
     return reader.options;
 }

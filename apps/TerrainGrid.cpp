@@ -59,11 +59,12 @@ std::optional<Georeference> georeferenceOf(const HeightSource& source, const Ter
     const terrain::HeightExtent extent = source.extent();
     const std::string wkt = source.map() ? source.map()->projection : std::string();
     if (wkt.empty() && extent.origin == glm::dvec2(0.0, 0.0)) return std::nullopt;
-    Georeference reference{extent.origin, extent.spacing, systemName(wkt), isGeographic(wkt), ""};
-    if (grid.heightScale != 1.0) return reference;
-    if (reference.isGeographic && grid.spacing == ownSpacing(source)) reference.unit = "m";
-    if (!reference.isGeographic && grid.spacing == extent.spacing) reference.unit = lengthUnit(wkt);
-    return reference;
+    const auto unit = [&]() -> std::string {
+        if (grid.heightScale != 1.0) return {};
+        if (isGeographic(wkt)) return grid.spacing == ownSpacing(source) ? std::string(1, 'm') : std::string();
+        return grid.spacing == extent.spacing ? lengthUnit(wkt) : std::string();
+    };
+    return Georeference{extent.origin, extent.spacing, systemName(wkt), isGeographic(wkt), unit()};
 }
 
 }  // namespace
