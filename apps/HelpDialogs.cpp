@@ -68,8 +68,12 @@ QDialog* makeKeysDialog(QWidget* parent) {
     for (const Command& command : commands()) {
         if (!command.keys.empty()) addRow(*table, {shown(command.keys), QString::fromStdString(command.help)});
     }
-    table->resizeColumnsToContents();
+    table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
     table->horizontalHeader()->setStretchLastSection(true);
+    table->setWordWrap(true);
+    table->resizeColumnToContents(0);
+    table->horizontalHeader()->setSectionResizeMode(1, QHeaderView::Stretch);
+    table->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close, dialog);
     QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::hide);
     auto* layout = new QVBoxLayout(dialog);
@@ -82,7 +86,7 @@ QDialog* makeKeysDialog(QWidget* parent) {
 QString aboutText(const std::string& renderer) {
     return QString("<h3>SoTerrainTest %1</h3>"
                    "<p>Flies over terrain with level of detail whose error on screen is bounded.</p>"
-                   "<p>Coin %2<br>SoQt %3<br>Qt %4<br>OpenGL: %5</p>")
+                   "<p>%2<br>SoQt %3<br>Qt %4<br>OpenGL: %5</p>")
         .arg(SoTerrain::getVersion(), SoDB::getVersion(), SOQT_VERSION, qVersion(),
              QString::fromStdString(renderer).toHtmlEscaped());
 }
