@@ -88,6 +88,8 @@ std::optional<Error> SceneBuilder::fromHeightMap() {
         how.progress = &progress;
         auto source = terrain::openHeightFile(options_.heightMap, how);
         grid = source ? placeGrid(std::move(source).value(), options_.spacing, options_.heightScale) : source.error();
+        // Also when that came after the last sample: what follows takes long, too.
+        if (progress.isCancelled) grid = Error{options_.heightMap, "to be read to its end", "that it was cancelled"};
     });
     if (!grid) return grid.error();
     scene_.grid_ = std::move(grid).value();
