@@ -6,6 +6,8 @@
 
 #include "MainWindow.h"
 
+#include <algorithm>
+
 #include <Inventor/Qt/SoQt.h>
 #include <QAction>
 #include <QActionGroup>
@@ -158,9 +160,16 @@ void MainWindow::showStreaming() {
     const bool streams = area_->isDrawn() && figures.terrain && !figures.terrain->isComplete;
     if (streaming_->isHidden() == streams) {
         streaming_->setVisible(streams);
-        streaming_->setRange(0, streams ? 0 : 1);
         streaming_->setToolTip("Finer parts of the terrain are on their way.");
+        mostPending_ = 0;
     }
+    if (!streams) return;
+    // The share of the tiles that were missing at worst; without tiles, that there is something to come.
+    const int pending = int(figures.terrain->pending);
+    mostPending_ = std::max(mostPending_, pending);
+    streaming_->setRange(0, mostPending_);
+    streaming_->setValue(mostPending_ - pending);
+    streaming_->setFormat(pending == 1 ? QString("1 tile to come") : QString("%1 tiles to come").arg(pending));
 }
 
 void MainWindow::say(const std::string& message) {

@@ -106,6 +106,7 @@ private:
     SettingsDialog* settingsDialog_ = nullptr;
     std::string fileName_;
     QProgressBar* streaming_;
+    int mostPending_ = 0;  ///< tiles, since streaming began
     bool isBusy_ = false;       ///< a file is being read
     bool isCancelled_ = false;  ///< and was not, because the user did not want it any more
     bool isAnnounced_ = false;  ///< the next frame takes long

@@ -25,7 +25,8 @@ struct FrameFigures {
         double errorPixels = 0.0;
         std::uint64_t memoryBytes = 0;
         std::uint64_t bufferBytes = 0;
-        bool isComplete = true;  ///< not waiting for tiles, nor stopped by a limit on work per frame
+        std::uint64_t pending = 0;  ///< tiles that other threads build, or will
+        bool isComplete = true;     ///< not waiting for tiles, nor stopped by a limit on work per frame
     };
     std::optional<Terrain> terrain;
 };

@@ -109,8 +109,8 @@ FrameFigures Scene::figures() {
     if (SoTerrainShape* shape = asTerrain(terrain_)) {
         const SoTerrainStatistics s = shape->getStatistics();
         figures.triangles = s.triangles;
-        figures.terrain = {s.selectMilliseconds, s.uploadMilliseconds, s.drawMilliseconds, s.patches,
-                           s.errorPixels,        s.memoryBytes,        s.bufferBytes,      s.converged};
+        figures.terrain = {s.selectMilliseconds, s.uploadMilliseconds, s.drawMilliseconds, s.patches,  s.errorPixels,
+                           s.memoryBytes,        s.bufferBytes,        s.pendingPatches,   s.converged};
         return figures;
     }
     if (terrain_ && terrain_->isOfType(SoQuadMesh::getClassTypeId())) {

@@ -25,7 +25,7 @@
   <tr><td>selection</td><td>ms</td><td>terrain nodes: choosing their meshes</td></tr>
   <tr><td>upload</td><td>ms</td><td>terrain nodes: filling buffers and textures</td></tr>
   <tr><td>drawing</td><td>ms</td><td>terrain nodes: GL's drawing calls, as the calling thread sees them</td></tr>
-  <tr><td>building</td><td>ms</td><td>terrain nodes: preparing height data that is new or has changed, in frames that do it; not tiles that other threads build</td></tr>
+  <tr><td>building</td><td>ms</td><td>terrain nodes: preparing height data that is new or has changed, in frames that do it; and new tiles, also of other threads</td></tr>
   <tr><td>triangles</td><td></td><td>terrain nodes: triangles sent to GL</td></tr>
   <tr><td>draw calls</td><td></td><td>terrain nodes: calls of GL for them</td></tr>
   <tr><td>patches</td><td></td><td>terrain nodes: parts that are drawn at one level each</td></tr>

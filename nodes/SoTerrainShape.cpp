@@ -313,6 +313,8 @@ void SoTerrainShape::Private::select(TerrainView & view, const terrain::View & c
     view.hasMesh = true;
     statistics.splits = list.report.splits;
     statistics.merges = list.report.merges;
+    statistics.tileMilliseconds = list.report.buildMilliseconds;
+    statistics.pendingPatches = list.report.pending;
 }
 
 bool SoTerrainShape::Private::hidesUndersides(const TerrainView & view, const terrain::View & camera, SoState * state,

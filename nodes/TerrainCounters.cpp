@@ -50,7 +50,7 @@ void TerrainCounters::publish(const SoTerrainStatistics & figures)
     all.selection.count(figures.selectMilliseconds);
     all.upload.count(figures.uploadMilliseconds);
     all.drawing.count(figures.drawMilliseconds);
-    all.building.count(figures.buildMilliseconds);
+    all.building.count(figures.buildMilliseconds + figures.tileMilliseconds);
     all.triangles.count(figures.triangles);
     all.drawCalls.count(figures.drawCalls);
     all.patches.count(figures.patches);

@@ -67,6 +67,7 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
         if (asBefore && isSettled_ && !indicesChanged && placedBytes_ == 0) report_.converged = true;
     }
     isFirst_ = false;
+    reportTiles();
     DrawList list;
     list.positions = positions_;
     list.samples = samplesOf_;
@@ -76,6 +77,15 @@ DrawList ChunkedLod::select(const SampleGrid& grid, const View& view, const LodS
     list.indicesChanged = indicesChanged;
     list.report = report_;
     return list;
+}
+
+// Tiles come between selections, so that even one which chooses nothing has some to tell of.
+void ChunkedLod::reportTiles() {
+    const double milliseconds = cache_.buildMilliseconds();
+    report_.buildMilliseconds = milliseconds - toldMilliseconds_;
+    toldMilliseconds_ = milliseconds;
+    // What may be in view soon is not missing.
+    report_.pending = report_.converged ? 0 : std::uint32_t(cache_.pending() + cache_.inFlight());
 }
 
 bool ChunkedLod::update(const SampleGrid& grid, const GridEdits& edits) {

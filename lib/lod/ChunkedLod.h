@@ -90,6 +90,7 @@ private:
     bool draw(const TileId& id, const TileMesh& mesh, const Box& box, float parentPixels);
     float parentShare(const TileMesh& mesh, float parentPixels);
     void updateTiles(const GridEdits& edits);
+    void reportTiles();
     std::size_t vertexBytes(const TileMesh& mesh) const { return mesh.at.size() * settings_.vertexBytes; }
 
     // The list
@@ -114,10 +115,11 @@ private:
     bool wasTooMuch_ = false;  ///< something did not come because of that
     bool mayExceed_ = false;   ///< one group of tiles may come although it exceeds the budget
     bool isFirst_ = true;
-    bool wasEdited_ = false;   ///< since the last selection
-    bool hasEdits_ = false;    ///< ever
+    bool wasEdited_ = false;  ///< since the last selection
+    bool hasEdits_ = false;   ///< ever
     bool isSettled_ = false;  ///< nothing is being built, and all tiles that are there could be looked at
     std::size_t placedBytes_ = 0;
+    double toldMilliseconds_ = 0.0;  ///< of building tiles
     std::vector<Tile> drawn_, drawnBefore_;
     std::map<TileId, Slot> slots_;
 

@@ -19,10 +19,12 @@ struct SelectionReport {
     std::uint32_t triangles = 0;
     std::uint32_t splits = 0;
     std::uint32_t merges = 0;
-    std::uint32_t patches = 1;  ///< parts that are each drawn at one level: tiles, blocks
-    std::uint32_t levels = 1;   ///< of detail that are drawn, of a clipmap
-    bool converged = true;      ///< false: the limit on operations was met, the next call goes on
-    float errorPixels = 0.0f;   ///< bound on the screen error of every sample in view; infinite when it could not be bounded
+    std::uint32_t patches = 1;       ///< parts that are each drawn at one level: tiles, blocks
+    std::uint32_t levels = 1;        ///< of detail that are drawn, of a clipmap
+    std::uint32_t pending = 0;       ///< parts that are being built, or will be, while some in view are missing
+    double buildMilliseconds = 0.0;  ///< of other threads, for parts built since the selection before
+    bool converged = true;           ///< false: the limit on operations was met, the next call goes on
+    float errorPixels = 0.0f;        ///< bound on the screen error of every sample in view; infinite when it could not be bounded
 };
 
 /// Triangles over a pool of vertices. The spans belong to the algorithm and are valid until its next selection.

@@ -161,6 +161,8 @@ public:
     std::size_t arrived() const { return arrived_; }
     /// Tiles built since the beginning.
     std::size_t built() const { return jobs_->counts().built; }
+    /// What that took, added up over all threads.
+    double buildMilliseconds() const { return jobs_->counts().milliseconds; }
     /// Nothing is queued or in flight: another frame of the same requests would change nothing.
     bool isIdle() const {
         const auto counts = jobs_->counts();

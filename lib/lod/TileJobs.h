@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -47,6 +48,7 @@ public:
         TileKey key;
         std::shared_ptr<const Tile> tile;  ///< null: the builder failed
         std::size_t bytes = 0;
+        double milliseconds = 0.0;  ///< that building it took its thread
     };
 
     /// What is on its way.
@@ -60,7 +62,8 @@ public:
         std::size_t queued = 0;
         std::size_t building = 0;
         std::size_t finished = 0;
-        std::size_t built = 0;  ///< since the beginning, without failures
+        std::size_t built = 0;      ///< since the beginning, without failures
+        double milliseconds = 0.0;  ///< of all threads, for those
     };
 
     explicit TileJobs(Builder builder) : builder_(std::move(builder)) {}
@@ -145,7 +148,7 @@ public:
 
     Counts counts() const {
         const std::lock_guard lock(mutex_);
-        return {queue_.size(), building_.size(), finished_.size(), built_};
+        return {queue_.size(), building_.size(), finished_.size(), built_, milliseconds_};
     }
 
 private:
@@ -198,9 +201,11 @@ private:
 
     Finished build(const TileKey& key) const {
         try {
+            const auto start = std::chrono::steady_clock::now();
             std::shared_ptr<const Tile> tile = builder_(key);
+            const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
             const std::size_t bytes = tile ? tile->bytes() : 0;
-            return {key, std::move(tile), bytes};
+            return {key, std::move(tile), bytes, taken.count()};
         } catch (...) {
             return {key, nullptr, 0};
         }
@@ -210,6 +215,7 @@ private:
         if (!built.tile) return;
         ++built_;
         builtBytes_ += built.bytes;
+        milliseconds_ += built.milliseconds;
     }
 
     std::size_t reservedBytes() const {
@@ -232,6 +238,7 @@ private:
     std::size_t jobs_ = 0;
     std::size_t built_ = 0;
     std::size_t builtBytes_ = 0;
+    double milliseconds_ = 0.0;
     bool closed_ = false;
 };
 

@@ -167,6 +167,29 @@ TEST_P(ChunkedLodOver, GivesFullDetailForAPixelErrorOfZero)
     EXPECT_EQ(away->select(grid, randomView(random, box), settings).report.triangles, everywhere);
 }
 
+TEST_P(ChunkedLodOver, TellsWhatIsToComeAndWhatItTook)
+{
+    const View view = flightView(box, 3, 40);
+    LodSettings settings = completeSettings(0.0f);
+    settings.complete = false;
+    const auto runner = std::make_shared<ManualRunner>();
+    ChunkedLod streaming(model(), grid, 16, nullptr, runner);
+    SelectionReport report = streaming.select(grid, view, settings).report;
+    EXPECT_GT(report.buildMilliseconds, 0.0) << "the root, which is always built at once";
+    EXPECT_EQ(streaming.select(grid, view, settings).report.buildMilliseconds, 0.0) << "nothing was built since";
+    const bool streams = !report.converged;
+    double milliseconds = 0.0;
+    for (int frame = 0; !report.converged; ++frame) {
+        ASSERT_LT(frame, 5000) << "never complete";
+        EXPECT_GT(report.pending, 0u);
+        runner->runAll();
+        report = streaming.select(grid, view, settings).report;
+        milliseconds += report.buildMilliseconds;
+    }
+    EXPECT_EQ(milliseconds > 0.0, streams);
+    EXPECT_EQ(report.pending, 0u);
+}
+
 TEST_P(ChunkedLodOver, GivesTheSameForTheSameAndRests)
 {
     const auto mesh = tiles(16), other = tiles(16);
