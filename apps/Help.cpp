@@ -6,6 +6,7 @@ namespace {
 
 const char* const optionHelp = R"(
 Terrain
+  FILE                      a scene if its name ends in .iv, else a height map
   -h, --heightmap FILE      height map: an image, a raster or a headerless .raw file
       --scene FILE.iv       show this scene file instead; its first terrain node is the one that is measured
   -t, --texture FILE        texture of the terrain

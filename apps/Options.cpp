@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "DebugViews.h"
 #include "OptionChecks.h"
@@ -106,6 +107,8 @@ std::string optionName(int code) {
 class Reader {
 public:
     void take(int code, const char* value);
+    /// A file without an option before it.
+    void takeTerrain(const std::string& file);
     void refuse(const std::string& subject, const std::string& expected, const std::string& found) {
         if (!problem) problem = Error{subject, expected, found};
     }
@@ -181,6 +184,11 @@ void Reader::take(int code, const char* value) {
         takeFlag(code);
         break;
     }
+}
+
+void Reader::takeTerrain(const std::string& file) {
+    if (options.namesTerrain()) return refuse("command line", "one terrain", "\"" + file + "\" besides");
+    (file.ends_with(".iv") ? options.scene : options.heightMap) = file;
 }
 
 void Reader::takeFlag(int code) {
@@ -388,14 +396,19 @@ Result<Options> parseOptions(int argc, char* const argv[]) {
     Reader reader;
     optind = 0;  // 0 makes glibc start afresh, also within one process
     opterr = 0;
-    int code = 0;
-    while (!reader.problem && (code = getopt_long(argc, argv, "+:h:t:p:a:A:F:e:r:g:fcvs", longOptions, nullptr)) != -1) {
+    std::vector<std::string> files;  // without an option before them
+    while (!reader.problem) {
+        const int code = getopt_long(argc, argv, "+:h:t:p:a:A:F:e:r:g:fcvs", longOptions, nullptr);
         if (code == '?' || code == ':')
             refuseOption(reader, code, argv);
-        else
+        else if (code != -1)
             reader.take(code, optarg);
+        else if (optind < argc)
+            files.push_back(argv[optind++]);
+        else
+            break;
     }
-    if (!reader.problem && optind < argc) reader.refuse("command line", "options only", std::string("\"") + argv[optind] + "\"");
+    for (const std::string& file : files) reader.takeTerrain(file);
     if (!reader.problem && !reader.options.help && !reader.options.version) reader.problem = checkCombination(reader.options);
     if (reader.problem) return *reader.problem;
     return reader.options;
@@ -405,6 +418,7 @@ std::string usage() {
     return "Usage: SoTerrainTest -h heightmap [-t texture] [-p profile_file] [-a algorithm] [-A animation_time]\n"
            "         [-F frame_time] [-e pixel_error] [-r triangle_count] [-g tile_size] [-f] [-c] [-v] [-s] [long options]\n"
            "       SoTerrainTest --scene file.iv [options]\n"
+           "       SoTerrainTest heightmap|file.iv [options]\n"
            "       SoTerrainTest [window options]\n"
            "       SoTerrainTest --help | --version\n";
 }

@@ -7,6 +7,7 @@
 #include <Inventor/SoPath.h>
 #include <Inventor/actions/SoGetBoundingBoxAction.h>
 #include <Inventor/actions/SoSearchAction.h>
+#include <Inventor/errors/SoReadError.h>
 #include <Inventor/fields/SoSFBool.h>
 #include <Inventor/nodes/SoDirectionalLight.h>
 #include <Inventor/nodes/SoPerspectiveCamera.h>
@@ -28,6 +29,30 @@ namespace {
 bool waitsForTiles(const Options& options) {
     return !options.output.empty() || options.measureError;
 }
+
+/// The first that Coin finds wrong with what it reads, while this exists; it is printed all the same.
+class ReadComplaint {
+public:
+    ReadComplaint() : print_(SoReadError::getHandlerCallback()) { SoReadError::setHandlerCallback(take, this); }
+    ~ReadComplaint() { SoReadError::setHandlerCallback(print_, nullptr); }
+    ReadComplaint(const ReadComplaint&) = delete;
+    ReadComplaint& operator=(const ReadComplaint&) = delete;
+
+    std::string text() const { return first_.empty() ? "a file that Coin can't read" : first_; }
+
+private:
+    static void take(const SoError* error, void* self) {
+        auto* complaint = static_cast<ReadComplaint*>(self);
+        std::string text = error->getDebugString().getString();
+        const std::string head = "Coin read error: ";
+        if (text.starts_with(head)) text.erase(0, head.size());
+        if (complaint->first_.empty()) complaint->first_ = text.substr(0, text.find('\n'));
+        if (complaint->print_) complaint->print_(error, nullptr);
+    }
+
+    SoErrorCB* const print_;
+    std::string first_;
+};
 
 }  // namespace
 
@@ -187,8 +212,9 @@ std::optional<Error> SceneBuilder::fromFile() {
     if (!input.openFile(options_.scene.c_str(), TRUE)) {
         return Error{options_.scene, "a readable scene file", "no such file, or no permission"};
     }
+    const ReadComplaint complaint;
     SoSeparator* content = SoDB::readAll(&input);
-    if (!content) return Error{options_.scene, "an Inventor scene", "a file that Coin can't read"};
+    if (!content) return Error{options_.scene, "an Inventor scene", complaint.text()};
     addRoot();
     scene_.root_->addChild(content);
     if (!find(SoLight::getClassTypeId())) {

@@ -58,6 +58,18 @@ TEST(Options, RepetitionsNeedAFlightWithAllOfItsFrames)
     EXPECT_FALSE(parse({"-h", "m.png", "--flight", "f.csv", "-s"}).value().replays()) << "frames that are left out depend on time";
 }
 
+TEST(Options, AFileAloneIsTheTerrain)
+{
+    const auto map = parse({"m.png", "-t", "t.jpg", "-c"});
+    ASSERT_TRUE(map) << map.error().message();
+    EXPECT_EQ(map.value().heightMap, "m.png");
+    EXPECT_EQ(map.value().texture, "t.jpg");
+    EXPECT_TRUE(map.value().frustumCulling);
+    EXPECT_EQ(parse({"-v", "s.iv"}).value().scene, "s.iv");
+    for (const auto& two : {std::vector<std::string>{"m.png", "-h", "n.png"}, {"m.png", "n.png"}, {"s.iv", "m.png"}, {"--scene", "s.iv", "m.png"}})
+        EXPECT_NE(refusal(two).find("one terrain"), std::string::npos);
+}
+
 TEST(Options, SwitchesAreOffUnlessGiven)
 {
     const auto result = parse({"-h", "m.png"});

@@ -95,6 +95,9 @@ Separator {
     SoROAMTerrain { pixelError 1 }
 }
 SCENE
+printf '#Inventor V2.1 ascii\nSeparator {\n  Cubee { }\n  Foo [ }\n' >"$SCRATCH/bad.iv"
+expect 1 "$TEST" "$SCRATCH/bad.iv" --offscreen
+grep -q "bad.iv: expected an Inventor scene, found .*Cubee" "$SCRATCH/err" || fail "a bad scene file does not say why: $(cat "$SCRATCH/err")"
 expect 0 "$TEST" --scene "$SCRATCH/scene.iv" --offscreen=160x120 --output "$SCRATCH/scene.ppm" --stats
 [ "$(colors "$SCRATCH/scene.ppm")" -gt 20 ] || fail "the scene file shows nothing"
 grep -q '"SoROAMTerrain"' "$SCRATCH/out" || fail "the scene's terrain is not the one that is measured"
